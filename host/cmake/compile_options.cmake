@@ -1,0 +1,16 @@
+# Flags shared by every target of ours; linked PRIVATE so that consumers see none of it.
+add_library(facezip_compile_options INTERFACE)
+target_compile_options(facezip_compile_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+                                                         -Wold-style-cast -Woverloaded-virtual)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  # GCC 12 warns of overlapping copies inside std::string's operator+ (GCC bug 105651).
+  target_compile_options(facezip_compile_options INTERFACE -Wno-restrict)
+endif()
+if(FACEZIP_WARNINGS_AS_ERRORS)
+  target_compile_options(facezip_compile_options INTERFACE -Werror)
+endif()
+if(FACEZIP_SANITIZE)
+  # Global, not per target: a library built without them would hide the reads of one built with.
+  add_compile_options(-fsanitize=${FACEZIP_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${FACEZIP_SANITIZE})
+endif()

@@ -1,0 +1,125 @@
+#include "device/device_context.hpp"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "device/kernel_sources.hpp"
+
+namespace facezip::device {
+
+std::string kernelSource(std::string_view file_name) {
+  const auto find = [](std::string_view name) -> std::string {
+    if (const char* folder = std::getenv("FACEZIP_KERNEL_DIR")) {
+      std::ifstream file(std::filesystem::path(folder) / name);
+      if (file) return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    }
+    const auto& embedded = embeddedKernelSources();
+    const auto found = embedded.find(name);
+    if (found == embedded.end()) throw DeviceError(fmt::format("kernel file {}", name), 0, "not part of this build");
+    return std::string(found->second);
+  };
+  return find("common.cl") + "\n#line 1 \"" + std::string(file_name) + "\"\n" + find(file_name);
+}
+
+DeviceContext::DeviceContext(cl::Device device, DeviceInfo info) : info_(std::move(info)), device_(std::move(device)) {
+  try {
+    context_ = cl::Context(device_);
+    queue_ = cl::CommandQueue(context_, device_, CL_QUEUE_PROFILING_ENABLE);
+  } catch (const cl::Error& error) {
+    throw toDeviceError(error, "opening the device", info_);
+  }
+}
+
+cl::Kernel DeviceContext::kernel(std::string_view file_name, std::string_view name, const std::string& defines) {
+  const std::scoped_lock lock(programs_mutex_);
+  const std::string key = fmt::format("{} {}", file_name, defines);
+  auto found = programs_.find(key);
+  try {
+    if (found == programs_.end()) {
+      cl::Program program(context_, kernelSource(file_name));
+      program.build({device_}, fmt::format("-cl-std=CL1.2 {}", defines).c_str());
+      found = programs_.emplace(key, std::move(program)).first;
+    }
+    return cl::Kernel(found->second, std::string(name).c_str());
+  } catch (const cl::BuildError& error) {
+    std::string log;
+    for (const auto& [failed, text] : error.getBuildLog()) log += text;
+    throw DeviceError(fmt::format("building {} ({})", file_name, defines), error.err(),
+                      fmt::format("on {}:\n{}", info_.name, log));
+  } catch (const cl::Error& error) {
+    throw toDeviceError(error, fmt::format("kernel {} of {}", name, file_name), info_);
+  }
+}
+
+KernelVariant DeviceContext::resolve(KernelVariant variant) const {
+  if (variant != KernelVariant::kAuto) return variant;
+  return info_.type == DeviceInfo::Type::kGpu ? KernelVariant::kGpu : KernelVariant::kCpu;
+}
+
+std::size_t DeviceContext::workGroupSize(const cl::Kernel& kernel, std::size_t wanted) const {
+  const std::size_t allowed =
+      std::min(info_.largest_work_group, kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device_));
+  return std::bit_floor(std::max<std::size_t>(1, std::min(wanted, allowed)));
+}
+
+cl::Buffer DeviceContext::allocate(std::size_t bytes, cl_mem_flags flags, std::string_view what) const {
+  if (bytes > info_.largest_allocation_bytes) {
+    throw DeviceError(fmt::format("allocating {} bytes for {}", bytes, what), CL_INVALID_BUFFER_SIZE,
+                      fmt::format("{} allows {} bytes in one buffer; lower --memory or choose another --device",
+                                  info_.name, info_.largest_allocation_bytes));
+  }
+  try {
+    return cl::Buffer(context_, flags, std::max<std::size_t>(bytes, 1));
+  } catch (const cl::Error& error) {
+    throw toDeviceError(error, fmt::format("allocating {} bytes for {}", bytes, what), info_);
+  }
+}
+
+void DeviceContext::write(const cl::Buffer& buffer, const void* data, std::size_t bytes, std::string_view what,
+                          std::size_t offset_bytes) const {
+  if (bytes == 0) return;
+  try {
+    queue_.enqueueWriteBuffer(buffer, CL_TRUE, offset_bytes, bytes, data);
+  } catch (const cl::Error& error) {
+    throw toDeviceError(error, fmt::format("writing {}", what), info_);
+  }
+}
+
+void DeviceContext::read(const cl::Buffer& buffer, void* data, std::size_t bytes, std::string_view what,
+                         std::size_t offset_bytes) const {
+  if (bytes == 0) return;
+  try {
+    queue_.enqueueReadBuffer(buffer, CL_TRUE, offset_bytes, bytes, data);
+  } catch (const cl::Error& error) {
+    throw toDeviceError(error, fmt::format("reading {}", what), info_);
+  }
+}
+
+cl::Event DeviceContext::run(const cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRange& local) const {
+  cl::Event event;
+  try {
+    queue_.enqueueNDRangeKernel(kernel, cl::NullRange, global, local, nullptr, &event);
+  } catch (const cl::Error& error) {
+    throw toDeviceError(error, fmt::format("running {}", kernel.getInfo<CL_KERNEL_FUNCTION_NAME>()), info_);
+  }
+  return event;
+}
+
+void DeviceContext::finish() const {
+  try {
+    queue_.finish();
+  } catch (const cl::Error& error) {
+    throw toDeviceError(error, "waiting for the device", info_);
+  }
+}
+
+DeviceError toDeviceError(const cl::Error& error, std::string_view step, const DeviceInfo& info) {
+  return DeviceError(fmt::format("{} ({})", step, error.what()), error.err(), fmt::format("on {}", info.name));
+}
+
+}  // namespace facezip::device

@@ -1,0 +1,97 @@
+// image_file.hpp - images on disk, read and written in bands of rows through OpenImageIO.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace facezip::image {
+
+/// How samples are kept in memory. Other types on disk are widened: half to float, 32-bit integers to float.
+enum class SampleType { kUint8, kUint16, kFloat32 };
+
+constexpr std::size_t sampleBytes(SampleType type) {
+  return type == SampleType::kUint8 ? 1 : type == SampleType::kUint16 ? 2 : 4;
+}
+/// "8-bit", "16-bit" or "float", for messages and package.json.
+std::string sampleTypeName(SampleType type);
+
+/// Factor from a stored sample to facezip's working unit, 1/255 of full scale (full scale of a float image is 1).
+constexpr float unit255(SampleType type) {
+  return type == SampleType::kUint8 ? 1.0f : type == SampleType::kUint16 ? 255.0f / 65535.0f : 255.0f;
+}
+
+struct ImageShape {
+  int width = 0;
+  int height = 0;
+  int channels = 0;
+  SampleType type = SampleType::kUint8;
+
+  std::size_t rowBytes() const {
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(channels) * sampleBytes(type);
+  }
+  bool operator==(const ImageShape&) const = default;
+};
+
+/// Reads an image from top to bottom. Samples are raw: no colour conversion, no premultiplication by alpha.
+class ImageReader {
+ public:
+  /// Opens `path`. Throws InputError if it is missing, unreadable or of a kind that OpenImageIO does not know.
+  explicit ImageReader(std::filesystem::path path);
+  ~ImageReader();
+  ImageReader(ImageReader&&) noexcept;
+  ImageReader& operator=(ImageReader&&) noexcept;
+
+  const ImageShape& shape() const { return shape_; }
+  const std::filesystem::path& path() const { return path_; }
+
+  /// Reads rows [begin, end) into `out` (row-major, channels interleaved, exactly (end - begin) * rowBytes()).
+  /// Bands in rising order are read once; going back re-reads compressed files from their start.
+  /// Throws InputError on a truncated or corrupt file, and on NaN or infinity in float images.
+  void readRows(int begin, int end, std::span<std::byte> out);
+
+ private:
+  struct Input;
+  void readTiledRows(int begin, int end, std::span<std::byte> out);
+  std::filesystem::path path_;
+  ImageShape shape_;
+  std::unique_ptr<Input> input_;
+};
+
+/// Writes an image from top to bottom.
+class ImageWriter {
+ public:
+  /// Creates `path`; the extension decides the format. Throws InputError for an unknown extension or a format that
+  /// cannot hold the shape, OutputError if the file cannot be created.
+  /// `colour_space` is recorded where the format can ("sRGB", "linear"; empty: not recorded).
+  ImageWriter(std::filesystem::path path, const ImageShape& shape, const std::string& colour_space = "");
+  ~ImageWriter();
+  ImageWriter(ImageWriter&&) noexcept;
+  ImageWriter& operator=(ImageWriter&&) noexcept;
+
+  /// Writes the next `row_count` rows. Throws OutputError (a full disk, say).
+  void writeRows(std::span<const std::byte> rows, int row_count);
+
+  /// Finishes the file; must be called, since only then is a full disk noticed. Throws OutputError.
+  void close();
+
+ private:
+  struct Output;
+  std::filesystem::path path_;
+  ImageShape shape_;
+  int next_row_ = 0;
+  std::unique_ptr<Output> output_;
+};
+
+/// A whole image in memory, for small ones (coverage masks, weight atlases, contact sheets).
+struct Image {
+  ImageShape shape;
+  std::vector<std::byte> samples;  ///< row-major, channels interleaved
+};
+Image readImage(const std::filesystem::path& path);
+void writeImage(const std::filesystem::path& path, const Image& image, const std::string& colour_space = "");
+
+}  // namespace facezip::image

@@ -1,0 +1,11 @@
+// common.cl - what every kernel file may use; the host puts this text in front of each of them.
+//
+// Tile layout, used by every texel-sized buffer: a tile is 16 x 16 texels, texel t = 16 * row + column inside it.
+//   differences  [tile][expression][channel][256]    DIFF_T, in units of 1/255 of full scale
+//   masks        [tile_mask_begin[tile] .. tile_mask_begin[tile + 1]][256]   float, 0..1
+// A row of 16 texels is one float16, which is one AVX-512 register and one half-warp of coalesced loads.
+
+#ifndef TILE_SIDE
+#define TILE_SIDE 16
+#endif
+#define TILE_TEXELS (TILE_SIDE * TILE_SIDE)

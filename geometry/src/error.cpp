@@ -1,5 +1,7 @@
 #include "facezip/error.hpp"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 namespace facezip {
@@ -34,7 +36,7 @@ OutputError::OutputError(const std::filesystem::path& file, const std::string& r
 
 SolverError::SolverError(const std::string& step, long size, double residual)
     : Error(step + ": the linear system with " + std::to_string(size) + " unknowns was not solved (relative residual " +
-            std::to_string(residual) + ")"),
+            fmt::format("{:.3g}", residual) + ")"),
       size_(size),
       residual_(residual) {}
 

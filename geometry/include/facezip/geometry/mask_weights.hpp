@@ -29,12 +29,15 @@ class BiharmonicSolver {
   /// Throws SolverError with the residual if a column, refined once, misses kResidualBound.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& values) const;
 
-  /// Largest residual of the last solve, as kResidualBound measures it.
-  double residual() const { return residual_; }
+  /// Largest residual of the columns of phi, #V by C, as kResidualBound measures it.
+  double residual(const Eigen::MatrixXd& phi) const;
+
+  /// Number of unknowns: vertices that are no samples.
   int freeCount() const { return static_cast<int>(free_.size()); }
 
  private:
   void factor();
+  Eigen::VectorXd solveColumn(const Eigen::VectorXd& rhs) const;
   double residualOf(const Eigen::VectorXd& rhs, const Eigen::VectorXd& solution) const;
 
   std::vector<int> samples_;                // K, region vertices whose values are given
@@ -43,7 +46,6 @@ class BiharmonicSolver {
   Eigen::SparseMatrix<double> free_fixed_;  // rows at free vertices, columns at samples
   double matrix_norm_ = 0;                  // maximum absolute row sum of free_free_
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factorisation_;
-  mutable double residual_ = 0;
 };
 
 /// Solves the K masks at the vertices: phi_k minimises |L phi_k|^2 with phi_k = 1 at samples[k] and 0 at other samples.
@@ -56,8 +58,8 @@ inline constexpr double kDefaultMaskCutoff = 0.01;
 
 /// What cutting tails did, per vertex of the region; masses before normalising, of rows that summed to 1.
 struct MaskCutCost {
-  double largest_removed = 0;     ///< largest weight a vertex lost in clamping at 1 and below the cutoff
-  double mean_removed = 0;        ///< mean of the same
+  double largest_removed = 0;     ///< most positive weight a vertex lost, all masks together
+  double mean_removed = 0;        ///< mean over the vertices of the same
   double largest_negative = 0;    ///< largest weight below zero that clamping took away, as a positive number
   double mean_active_before = 0;  ///< mean number of masks above zero at a vertex
   double mean_active_after = 0;   ///< mean number of masks at a vertex now

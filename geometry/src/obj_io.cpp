@@ -1,0 +1,262 @@
+// obj_io.cpp - Wavefront OBJ through tinyobjloader, in double precision.
+// tinyobjloader reads leniently: "v nan 1 2" is 0 1 2, a missing number is 0, a missing corner drops the face. A scan
+// of the lines comes first, which refuses those and remembers the lines, so that every message can name one.
+#include "facezip/geometry/obj_io.hpp"
+
+#include <fmt/format.h>
+#include <tiny_obj_loader.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "facezip/error.hpp"
+
+namespace facezip::geometry {
+namespace {
+
+constexpr std::string_view kBlank = " \t";
+// tinyobjloader counts the corners of a face in a byte.
+constexpr int kMostCorners = 255;
+
+// Where the parts of the file are: line numbers from 1, in file order.
+struct ObjLines {
+  std::vector<int> vertices;
+  std::vector<int> uvs;
+  std::vector<int> faces;
+  bool faces_have_uvs = false;
+};
+
+[[noreturn]] void refuse(const std::filesystem::path& file, int line, const std::string& expected,
+                         const std::string& got, const std::string& cure = "") {
+  throw InputError({file.string(), "line " + std::to_string(line), expected, got, cure});
+}
+
+std::string readText(const std::filesystem::path& file) {
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) throw InputError({file.string(), "", "an OBJ file", "a folder", ""});
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) {
+    throw InputError({file.string(), "", "an OBJ file", std::system_category().message(errno), "check the path"});
+  }
+  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  if (stream.bad()) throw InputError({file.string(), "", "an OBJ file", "a file that cannot be read to its end", ""});
+  return text;
+}
+
+// Takes the next word off the line; empty at its end.
+std::string_view nextWord(std::string_view& line) {
+  const std::size_t begin = line.find_first_not_of(kBlank);
+  if (begin == std::string_view::npos) return line = {};
+  const std::size_t end = std::min(line.find_first_of(kBlank, begin), line.size());
+  const std::string_view word = line.substr(begin, end - begin);
+  line.remove_prefix(end);
+  return word;
+}
+
+// A decimal number as tinyobjloader understands it; whether it is finite shows after reading.
+bool isNumber(std::string_view word) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  const bool spelled_out = word.find_first_of("nN") != std::string_view::npos;  // nan, inf
+  return end == word.data() + word.size() && error != std::errc::invalid_argument && !spelled_out;
+}
+
+void checkNumbers(const std::filesystem::path& file, int line_number, std::string_view rest, int count) {
+  for (int i = 0; i < count; ++i) {
+    const std::string_view word = nextWord(rest);
+    if (isNumber(word)) continue;
+    refuse(file, line_number, fmt::format("{} finite numbers", count),
+           word.empty() ? fmt::format("{}", i) : fmt::format("\"{}\"", word), "export the mesh again");
+  }
+}
+
+// Does the corner "v", "v/vt", "v//vn" or "v/vt/vn" have a texture coordinate?
+bool cornerHasUv(std::string_view corner) {
+  const std::size_t slash = corner.find('/');
+  return slash != std::string_view::npos && slash + 1 < corner.size() && corner[slash + 1] != '/';
+}
+
+void scanFace(const std::filesystem::path& file, int line_number, std::string_view rest, ObjLines& lines) {
+  int corners = 0;
+  int corners_with_uvs = 0;
+  for (std::string_view word = nextWord(rest); !word.empty(); word = nextWord(rest)) {
+    ++corners;
+    corners_with_uvs += cornerHasUv(word) ? 1 : 0;
+  }
+  if (corners < 3) refuse(file, line_number, "a face of at least 3 corners", std::to_string(corners));
+  if (corners > kMostCorners) {
+    refuse(file, line_number, fmt::format("a face of at most {} corners", kMostCorners), std::to_string(corners),
+           "triangulate the mesh");
+  }
+  if (lines.faces.empty()) lines.faces_have_uvs = corners_with_uvs > 0;
+  if (corners_with_uvs != (lines.faces_have_uvs ? corners : 0)) {
+    refuse(file, line_number, "texture coordinates at all corners of all faces or at none",
+           fmt::format("{} of {} corners with one", corners_with_uvs, corners), "give every face UVs");
+  }
+  lines.faces.push_back(line_number);
+}
+
+ObjLines scanLines(const std::filesystem::path& file, std::string_view text) {
+  ObjLines lines;
+  for (int number = 1; !text.empty(); ++number) {
+    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
+    std::string_view rest = text.substr(0, end);
+    const std::string_view keyword = nextWord(rest);
+    if (keyword == "v") {
+      checkNumbers(file, number, rest, 3);
+      lines.vertices.push_back(number);
+    } else if (keyword == "vt") {
+      checkNumbers(file, number, rest, 2);
+      lines.uvs.push_back(number);
+    } else if (keyword == "f") {
+      scanFace(file, number, rest, lines);
+    }
+    text.remove_prefix(end);
+    text.remove_prefix(text.starts_with("\r\n") ? 2 : text.empty() ? 0 : 1);
+  }
+  if (lines.vertices.empty()) throw InputError({file.string(), "", "an OBJ mesh", "no vertices", ""});
+  if (lines.faces.empty()) throw InputError({file.string(), "", "an OBJ mesh", "no faces", ""});
+  return lines;
+}
+
+tinyobj::ObjReader parse(const std::filesystem::path& file, const std::string& text) {
+  tinyobj::ObjReaderConfig config;
+  config.triangulate = false;  // it would cut each quad along its shorter diagonal, so differently in every expression
+  config.vertex_color = false;
+  tinyobj::ObjReader reader;
+  if (!reader.ParseFromString(text, "", config)) {
+    std::string reason = reader.Error();
+    while (!reason.empty() && reason.back() == '\n') reason.pop_back();
+    throw InputError({file.string(), "", "an OBJ mesh", reason, "export the mesh again"});
+  }
+  return reader;
+}
+
+// Copies `values` into a matrix of as many columns as Matrix has.
+template <typename Matrix>
+Matrix coordinates(const std::filesystem::path& file, const std::vector<double>& values,
+                   const std::vector<int>& lines) {
+  constexpr Eigen::Index kColumns = Matrix::ColsAtCompileTime;
+  const auto rows = static_cast<Eigen::Index>(lines.size());
+  if (static_cast<Eigen::Index>(values.size()) != rows * kColumns) {
+    throw InputError({file.string(), "", fmt::format("{} rows of {} coordinates", rows, Eigen::Index{kColumns}),
+                      fmt::format("{} numbers", values.size()), "export the mesh again"});
+  }
+  Matrix matrix(rows, kColumns);
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    for (Eigen::Index column = 0; column < kColumns; ++column) {
+      const double value = values[static_cast<std::size_t>(row * kColumns + column)];
+      if (!std::isfinite(value)) {
+        refuse(file, lines[static_cast<std::size_t>(row)], "finite numbers", fmt::format("{}", value));
+      }
+      matrix(row, column) = value;
+    }
+  }
+  return matrix;
+}
+
+// The index of one corner, checked against the number of what it counts.
+int checkedIndex(const std::filesystem::path& file, int line, int index, std::size_t count, const char* what) {
+  if (index < 0 || static_cast<std::size_t>(index) >= count) {
+    refuse(file, line, fmt::format("{} indices from 1 to {}", what, count), fmt::format("{}", index + 1LL));
+  }
+  return index;
+}
+
+// Polygons as fans around their first corner.
+class FanBuilder {
+ public:
+  FanBuilder(const std::filesystem::path& file, const ObjLines& lines) : file_(file), lines_(lines) {}
+
+  void add(const tinyobj::mesh_t& mesh) {
+    std::size_t corner = 0;
+    for (const unsigned char corners : mesh.num_face_vertices) {
+      const int line = lines_.faces.at(face_++);
+      for (std::size_t i = 1; i + 1 < corners; ++i) {
+        for (const std::size_t j : {std::size_t{0}, i, i + 1}) addCorner(mesh.indices[corner + j], line);
+      }
+      corner += corners;
+    }
+  }
+
+  void store(TriangleMesh& mesh) const {
+    using RowMajor = Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>;
+    const auto rows = static_cast<Eigen::Index>(vertices_.size() / 3);
+    mesh.triangles = Eigen::Map<const RowMajor>(vertices_.data(), rows, 3);
+    mesh.uv_triangles = Eigen::Map<const RowMajor>(uvs_.data(), static_cast<Eigen::Index>(uvs_.size() / 3), 3);
+  }
+
+  std::size_t faceCount() const { return face_; }
+
+ private:
+  void addCorner(const tinyobj::index_t& index, int line) {
+    vertices_.push_back(checkedIndex(file_, line, index.vertex_index, lines_.vertices.size(), "vertex"));
+    if (lines_.faces_have_uvs) {
+      uvs_.push_back(checkedIndex(file_, line, index.texcoord_index, lines_.uvs.size(), "texture coordinate"));
+    }
+  }
+
+  const std::filesystem::path& file_;
+  const ObjLines& lines_;
+  std::size_t face_ = 0;
+  std::vector<int> vertices_;
+  std::vector<int> uvs_;
+};
+
+std::string formatObj(const TriangleMesh& mesh) {
+  fmt::memory_buffer text;
+  const auto out = std::back_inserter(text);
+  for (const auto& p : mesh.positions.rowwise()) fmt::format_to(out, "v {} {} {}\n", p[0], p[1], p[2]);
+  for (const auto& uv : mesh.uvs.rowwise()) fmt::format_to(out, "vt {} {}\n", uv[0], uv[1]);
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
+    fmt::format_to(out, "f");
+    for (int corner = 0; corner < 3; ++corner) {
+      fmt::format_to(out, " {}", mesh.triangles(t, corner) + 1);
+      if (mesh.uv_triangles.rows() > 0) fmt::format_to(out, "/{}", mesh.uv_triangles(t, corner) + 1);
+    }
+    fmt::format_to(out, "\n");
+  }
+  return fmt::to_string(text);
+}
+
+}  // namespace
+
+TriangleMesh readObj(const std::filesystem::path& file) {
+  const std::string text = readText(file);
+  const ObjLines lines = scanLines(file, text);
+  const tinyobj::ObjReader reader = parse(file, text);
+
+  TriangleMesh mesh;
+  mesh.positions = coordinates<Eigen::MatrixX3d>(file, reader.GetAttrib().vertices, lines.vertices);
+  FanBuilder fans(file, lines);
+  for (const tinyobj::shape_t& shape : reader.GetShapes()) fans.add(shape.mesh);
+  if (fans.faceCount() != lines.faces.size()) {
+    throw InputError({file.string(), "", fmt::format("{} faces", lines.faces.size()),
+                      fmt::format("{}", fans.faceCount()), "export the mesh again"});
+  }
+  fans.store(mesh);
+  // Texture coordinates that no face uses are as good as none: callers ask "has it UVs?" by their number.
+  if (lines.faces_have_uvs) mesh.uvs = coordinates<Eigen::MatrixX2d>(file, reader.GetAttrib().texcoords, lines.uvs);
+  return mesh;
+}
+
+void writeObj(const std::filesystem::path& file, const TriangleMesh& mesh) {
+  const std::string text = formatObj(mesh);
+  errno = 0;
+  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
+  if (!stream) throw OutputError(file, std::system_category().message(errno), "check the folder and its permissions");
+  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
+  stream.close();  // the last block may be refused only here
+  if (!stream) throw OutputError(file, std::system_category().message(errno), "free some space");
+}
+
+}  // namespace facezip::geometry

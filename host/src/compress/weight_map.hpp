@@ -1,0 +1,72 @@
+// weight_map.hpp - the weights with which every expression mixes the difference textures (FaceZip Eq. 6).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "device/device_context.hpp"
+
+namespace facezip::compress {
+
+/// Masks at the cells of the weight grid, a row of cells after the other. Entries of cell p are
+/// cell_begin[p] .. cell_begin[p + 1] of the other two.
+struct CellMasks {
+  std::vector<int> cell_begin;  ///< #cells + 1, rising from 0
+  std::vector<int> mask_index;  ///< in [0, K), no mask twice in a cell
+  std::vector<float>
+      mask_weights;  ///< M_k at the cell, in [0, 1]; a cell's sum to 1, or it has none and all its weights are 0
+
+  std::size_t cells() const { return cell_begin.empty() ? 0 : cell_begin.size() - 1; }
+};
+
+/// Fills weight maps, a range of cells at a time, so that a caller can stream them in bands. Keeps its device buffers
+/// from one call to the next. Not for use by two threads at once.
+class WeightMapper {
+ public:
+  /// texture_of   K x N, each in [0, C): textureOfExpression()
+  /// clusters     C, 1 to 8
+  WeightMapper(device::DeviceContext& context, std::span<const int> texture_of, int masks, int expressions,
+               int clusters);
+
+  /// Bytes of fill()'s output for `cell_count` cells.
+  std::size_t outputBytes(std::size_t cell_count) const;
+
+  /// W_in = sum_k alpha_ink M_k of cells first_cell .. first_cell + cell_count - 1 (Eq. 6), as bytes
+  /// [expression][cell][C] that stand for byte / 255: 255 w + 1/2 rounded down, at most 255.
+  /// out   outputBytes(cell_count) bytes
+  /// Throws DeviceError, also when the range is too large for the device.
+  void fill(const CellMasks& cells, std::size_t first_cell, std::size_t cell_count, std::span<std::uint8_t> out);
+
+ private:
+  cl::Buffer& pooled(cl::Buffer& buffer, std::size_t& capacity, std::size_t bytes, const char* what);
+
+  device::DeviceContext& context_;
+  int expressions_;
+  int clusters_;
+  cl::Buffer texture_of_;
+  cl::Buffer cell_begin_, mask_index_, mask_weights_, weights_;
+  std::size_t cell_begin_capacity_ = 0, mask_index_capacity_ = 0, mask_weights_capacity_ = 0, weights_capacity_ = 0;
+};
+
+/// Sizes and device buffers of one launch of kernels/cl/weight_map.cl, which describes them.
+struct WeightMapLaunch {
+  std::size_t cells = 0;
+  int expressions = 0;
+  int clusters = 0;
+  int first_entry = 0;  ///< what cell_begin counts from
+  cl::Buffer cell_begin;
+  cl::Buffer mask_index;
+  cl::Buffer mask_weights;
+  cl::Buffer texture_of;
+  cl::Buffer weights;
+};
+
+/// Enqueues the kernel; the caller owns the buffers. For tests and benchmarks.
+cl::Event launchWeightMap(device::DeviceContext& context, const WeightMapLaunch& launch);
+
+/// K x padded N in the layout of the kernel's buffer `texture_of`.
+std::vector<int> packTextureOf(std::span<const int> texture_of, int masks, int expressions);
+
+}  // namespace facezip::compress

@@ -1,0 +1,43 @@
+// capture.hpp - a capture on disk: a neutral and N expressions, each with its own textures, in one mesh and UV layout.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "facezip/error.hpp"
+
+namespace facezip {
+
+/// One kind of texture (albedo, normal, ...) of every face of a capture.
+struct CaptureMap {
+  std::string name;
+  std::string colour_space;                        ///< "sRGB", "linear" or "" (not known); carried into the package
+  double metric_weight = 1.0;                      ///< how much an error of this map counts beside the others', >= 0
+  std::filesystem::path neutral;                   ///< image of the neutral
+  std::vector<std::filesystem::path> expressions;  ///< N images, in the order of Capture::expressions
+};
+
+/// What a capture directory holds. Files are named, not read; their content is checked where it is used.
+struct Capture {
+  std::string name;
+  std::filesystem::path directory;
+  std::filesystem::path neutral_mesh;
+  std::vector<std::string> expressions;                  ///< N unique names
+  std::vector<std::filesystem::path> expression_meshes;  ///< N paths, empty where an expression has no mesh
+  std::vector<CaptureMap> maps;                          ///< at least one
+  std::string unit;                                      ///< of the meshes' coordinates as written, "" if not stated
+  std::optional<std::filesystem::path> face_region;      ///< triangle indices of the part that changes
+  std::optional<std::filesystem::path> coverage;         ///< or a painted image of it
+};
+
+/// Finds what is in `directory` (layout in docs/capture_format.md). capture.json, where present, decides; what it
+/// leaves out is found by name: MAP/neutral.EXT and MAP/NAME.EXT for textures, neutral.obj, expressions/NAME.obj,
+/// face_region.txt, coverage.png. Expressions come in the order of capture.json, else by name.
+/// map_names  maps to take, in this order; empty: all
+/// Throws InputError: no directory, no neutral mesh, no map, a map without neutral, an expression that one map has and
+/// another lacks, two expressions with the same name, no expression, malformed capture.json.
+Capture openCapture(const std::filesystem::path& directory, const std::vector<std::string>& map_names = {});
+
+}  // namespace facezip

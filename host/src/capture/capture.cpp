@@ -1,0 +1,189 @@
+#include "facezip/capture.hpp"
+
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "capture/capture_json.hpp"
+
+namespace facezip {
+namespace fs = std::filesystem;
+namespace {
+
+/// Extensions that OpenImageIO reads, in lower case with the dot.
+const std::set<std::string>& imageExtensions() {
+  static const std::set<std::string> extensions = [] {
+    std::set<std::string> all;
+    for (const auto& [format, list] : OIIO::get_extension_map()) {
+      for (const std::string& extension : list) all.insert("." + extension);
+    }
+    return all;
+  }();
+  return extensions;
+}
+
+bool isImage(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  // A name that starts with a dot is the desktop's or an unfinished copy, not a texture.
+  return imageExtensions().contains(extension) && path.filename().string().front() != '.';
+}
+
+/// Image files of a folder by stem. Two files with the same stem would be two textures of one expression.
+std::map<std::string, fs::path> imagesByName(const fs::path& folder) {
+  std::map<std::string, fs::path> images;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (!entry.is_regular_file() || !isImage(entry.path())) continue;
+    const auto [it, inserted] = images.emplace(entry.path().stem().string(), entry.path());
+    if (inserted) continue;
+    std::set<std::string> both = {it->second.filename().string(), entry.path().filename().string()};
+    throw InputError({folder.string(), fmt::format("expression \"{}\"", it->first), "one texture",
+                      fmt::format("{}", fmt::join(both, " and ")), "remove or rename one"});
+  }
+  return images;
+}
+
+/// The textures of one map before the expressions' order is known.
+struct FoundMap {
+  CaptureJson::Map description;
+  fs::path folder;
+  std::map<std::string, fs::path> images;
+};
+
+std::map<std::string, FoundMap> findMaps(const fs::path& directory, const CaptureJson& description) {
+  std::map<std::string, FoundMap> maps;
+  for (const fs::directory_entry& entry : fs::directory_iterator(directory)) {
+    const std::string name = entry.path().filename().string();
+    if (!entry.is_directory() || name.front() == '.') continue;
+    const bool described = description.maps.contains(name);
+    // A description is complete: folders that it does not name (renders, references) are not maps.
+    if (!described && !description.maps.empty()) continue;
+    std::map<std::string, fs::path> images = imagesByName(entry.path());
+    if (!described && images.empty()) continue;
+    maps[name] = {described ? description.maps.at(name) : CaptureJson::Map{}, entry.path(), std::move(images)};
+  }
+  for (const auto& [name, map] : description.maps) {
+    FoundMap& found = maps.try_emplace(name, FoundMap{map, directory / name, {}}).first->second;
+    if (!map.neutral.empty()) found.images["neutral"] = directory / map.neutral;
+    for (const auto& [expression, file] : map.expressions) found.images[expression] = directory / file;
+  }
+  return maps;
+}
+
+void requireUnique(const std::vector<std::string>& names, const fs::path& file) {
+  std::set<std::string> seen;
+  for (const std::string& name : names) {
+    if (!seen.insert(name).second) {
+      throw InputError(
+          {file.string(), fmt::format("expression \"{}\"", name), "unique names", "the same name twice", "rename one"});
+    }
+    if (name.find_first_of("/\\,=") != std::string::npos) {
+      throw InputError({file.string(), fmt::format("expression \"{}\"", name), "a name without / \\ , =", name, ""});
+    }
+  }
+}
+
+/// The expressions' names: capture.json's order, else every image name that any map has, sorted.
+std::vector<std::string> expressionNames(const fs::path& directory, const CaptureJson& description,
+                                         const std::map<std::string, FoundMap>& maps) {
+  std::vector<std::string> names = description.expressions;
+  if (names.empty()) {
+    std::set<std::string> all;
+    for (const auto& [map_name, map] : maps) {
+      for (const auto& [name, file] : map.images) all.insert(name);
+    }
+    all.erase("neutral");
+    names.assign(all.begin(), all.end());
+  }
+  requireUnique(names, directory / "capture.json");
+  if (names.empty()) {
+    throw InputError({directory.string(), "expressions", "at least one expression beside the neutral", "none",
+                      "add MAP/NAME.png for every expression"});
+  }
+  return names;
+}
+
+fs::path textureOf(const FoundMap& map, const std::string& map_name, const std::string& name) {
+  const auto found = map.images.find(name);
+  std::error_code error;
+  if (found != map.images.end() && fs::exists(found->second, error)) return found->second;
+  const fs::path missing = found != map.images.end() ? found->second : map.folder / (name + ".png");
+  throw InputError(
+      {missing.string(), fmt::format("map \"{}\"", map_name),
+       name == "neutral" ? "the texture of the neutral" : fmt::format("the texture of expression \"{}\"", name),
+       "no such file", "add the texture, or take the map or expression out"});
+}
+
+CaptureMap makeMap(const std::string& name, const FoundMap& found, const std::vector<std::string>& expressions) {
+  CaptureMap map;
+  map.name = name;
+  map.colour_space = found.description.colour_space;
+  map.metric_weight = found.description.weight;
+  map.neutral = textureOf(found, name, "neutral");
+  for (const std::string& expression : expressions) map.expressions.push_back(textureOf(found, name, expression));
+  return map;
+}
+
+std::vector<std::string> chooseMaps(const fs::path& directory, const std::map<std::string, FoundMap>& found,
+                                    const std::vector<std::string>& wanted) {
+  std::vector<std::string> names;
+  for (const auto& [name, map] : found) names.push_back(name);
+  if (names.empty()) {
+    throw InputError({directory.string(), "maps", "folders of textures such as albedo/neutral.png", "none", ""});
+  }
+  for (const std::string& name : wanted) {
+    if (found.contains(name)) continue;
+    throw InputError({directory.string(), fmt::format("map \"{}\"", name),
+                      fmt::format("one of {}", fmt::join(names, ", ")), "no such map", ""});
+  }
+  return wanted.empty() ? names : wanted;
+}
+
+std::optional<fs::path> optionalFile(const fs::path& directory, const std::string& named, const std::string& usual) {
+  if (!named.empty()) return directory / named;  // named in capture.json: a missing one is an error when it is read
+  std::error_code error;
+  if (fs::exists(directory / usual, error)) return directory / usual;
+  return std::nullopt;
+}
+
+}  // namespace
+
+Capture openCapture(const fs::path& directory, const std::vector<std::string>& map_names) {
+  std::error_code error;
+  if (!fs::is_directory(directory, error)) {
+    throw InputError({directory.string(), "", "a capture directory",
+                      fs::exists(directory, error) ? "a file" : "no such directory", ""});
+  }
+  const CaptureJson description = readCaptureJson(directory / "capture.json").value_or(CaptureJson{});
+  const std::map<std::string, FoundMap> found = findMaps(directory, description);
+
+  Capture capture;
+  capture.directory = directory;
+  capture.name =
+      !description.name.empty() ? description.name : fs::absolute(directory).lexically_normal().filename().string();
+  if (capture.name.empty()) capture.name = "capture";
+  capture.unit = description.unit;
+  capture.neutral_mesh = directory / (description.neutral_mesh.empty() ? "neutral.obj" : description.neutral_mesh);
+  if (!fs::exists(capture.neutral_mesh, error)) {
+    throw InputError({capture.neutral_mesh.string(), "", "the mesh of the neutral", "no such file", ""});
+  }
+  const std::vector<std::string> chosen = chooseMaps(directory, found, map_names);
+  std::map<std::string, FoundMap> used;
+  for (const std::string& name : chosen) used[name] = found.at(name);
+  capture.expressions = expressionNames(directory, description, used);
+  for (const std::string& name : chosen) capture.maps.push_back(makeMap(name, used.at(name), capture.expressions));
+  for (const std::string& name : capture.expressions) {
+    const fs::path mesh = directory / "expressions" / (name + ".obj");
+    capture.expression_meshes.push_back(fs::exists(mesh, error) ? mesh : fs::path());
+  }
+  capture.face_region = optionalFile(directory, description.face_region, "face_region.txt");
+  capture.coverage = optionalFile(directory, description.coverage, "coverage.png");
+  return capture;
+}
+
+}  // namespace facezip

@@ -1,0 +1,32 @@
+// capture_json.hpp - capture.json, the optional description of a capture (docs/capture_format.md).
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace facezip {
+
+/// What capture.json says; everything is optional.
+struct CaptureJson {
+  struct Map {
+    std::string colour_space;
+    double weight = 1.0;
+    std::string neutral;                             ///< file relative to the capture, "" if not named
+    std::map<std::string, std::string> expressions;  ///< expression to file relative to the capture
+  };
+  std::string name;
+  std::string unit;
+  std::string neutral_mesh;
+  std::string face_region;
+  std::string coverage;
+  std::vector<std::string> expressions;
+  std::map<std::string, Map> maps;
+};
+
+/// Reads `file`; std::nullopt if there is none. Throws InputError naming the field that is malformed.
+std::optional<CaptureJson> readCaptureJson(const std::filesystem::path& file);
+
+}  // namespace facezip

@@ -1,0 +1,166 @@
+#include "raster/texel_masks.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cassert>
+
+namespace facezip::raster {
+namespace {
+
+using compress::kTileSide;
+using compress::kTileTexels;
+using compress::TileMasks;
+using compress::TilePosition;
+
+/// Appends the tiles of `part` to `whole`.
+void append(TileMasks& whole, const TileMasks& part) {
+  const int offset = static_cast<int>(whole.mask_index.size());
+  whole.tiles.insert(whole.tiles.end(), part.tiles.begin(), part.tiles.end());
+  for (std::size_t t = 1; t < part.mask_begin.size(); ++t) whole.mask_begin.push_back(offset + part.mask_begin[t]);
+  whole.mask_index.insert(whole.mask_index.end(), part.mask_index.begin(), part.mask_index.end());
+  whole.mask_weights.insert(whole.mask_weights.end(), part.mask_weights.begin(), part.mask_weights.end());
+  whole.texel_weights.insert(whole.texel_weights.end(), part.texel_weights.begin(), part.texel_weights.end());
+}
+
+}  // namespace
+
+TexelMasks::TexelMasks(const geometry::TriangleMesh& mesh, const geometry::RegionMesh& region,
+                       const geometry::MaskWeights& masks)
+    : mesh_(mesh), region_(region), masks_(masks) {
+  assert(masks.vertexCount() == region.vertexCount());
+}
+
+void TexelMasks::accumulate(const TexelSample& sample, float weight, std::span<float> accumulator,
+                            std::vector<int>& touched) const {
+  const float barycentric[3] = {sample.b0, sample.b1, 1.0f - sample.b0 - sample.b1};
+  for (int corner = 0; corner < 3; ++corner) {
+    const int mesh_vertex = mesh_.triangles(sample.triangle, corner);
+    const auto vertex = static_cast<std::size_t>(region_.region_vertices[static_cast<std::size_t>(mesh_vertex)]);
+    const float share = std::max(0.0f, barycentric[corner]) * weight;
+    if (share == 0.0f) continue;
+    for (int e = masks_.row_begin[vertex]; e < masks_.row_begin[vertex + 1]; ++e) {
+      const auto entry = static_cast<std::size_t>(e);
+      float& value = accumulator[static_cast<std::size_t>(masks_.mask_index[entry])];
+      if (value == 0.0f) touched.push_back(masks_.mask_index[entry]);
+      value += share * masks_.weight[entry];
+    }
+  }
+}
+
+void TexelMasks::addTile(const std::vector<TexelSample>& samples, int width, int rows, TilePosition position,
+                         std::vector<float>& scratch, TileMasks& out) const {
+  const int x_end = std::min(width, (position.x + 1) * kTileSide);
+  const int y_end = std::min(rows, (position.y + 1) * kTileSide);
+  // scratch holds [mask][256] for every mask and is all zero between calls.
+  std::vector<int> active;
+  std::vector<float> texel(static_cast<std::size_t>(masks_.mask_count), 0.0f);
+  std::vector<int> touched;
+  std::vector<char> is_active(static_cast<std::size_t>(masks_.mask_count), 0);
+  std::vector<float> texel_weights(kTileTexels, 0.0f);
+  for (int y = position.y * kTileSide; y < y_end; ++y) {
+    for (int x = position.x * kTileSide; x < x_end; ++x) {
+      const TexelSample& sample =
+          samples[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+      if (sample.triangle < 0) continue;
+      const int t = (y - position.y * kTileSide) * kTileSide + (x - position.x * kTileSide);
+      if (sample.kind == TexelSample::Kind::kCovered) texel_weights[static_cast<std::size_t>(t)] = 1.0f;
+      touched.clear();
+      accumulate(sample, 1.0f, texel, touched);
+      for (const int mask : touched) {
+        if (!is_active[static_cast<std::size_t>(mask)]) {
+          is_active[static_cast<std::size_t>(mask)] = 1;
+          active.push_back(mask);
+        }
+        scratch[static_cast<std::size_t>(mask) * kTileTexels + static_cast<std::size_t>(t)] =
+            texel[static_cast<std::size_t>(mask)];
+        texel[static_cast<std::size_t>(mask)] = 0.0f;
+      }
+    }
+  }
+  if (active.empty()) return;
+  std::sort(active.begin(), active.end());
+  out.tiles.push_back(position);
+  for (const int mask : active) {
+    const auto values = scratch.begin() + static_cast<std::ptrdiff_t>(mask) * kTileTexels;
+    out.mask_index.push_back(mask);
+    out.mask_weights.insert(out.mask_weights.end(), values, values + kTileTexels);
+    std::fill(values, values + kTileTexels, 0.0f);
+  }
+  out.mask_begin.push_back(static_cast<int>(out.mask_index.size()));
+  out.texel_weights.insert(out.texel_weights.end(), texel_weights.begin(), texel_weights.end());
+}
+
+compress::TileMasks TexelMasks::tiles(const UvRaster& raster, int begin, int end) const {
+  const std::vector<TexelSample> samples = raster.rows(begin, end);
+  const int rows = end - begin;
+  const int tile_rows = (rows + kTileSide - 1) / kTileSide;
+  const int tile_columns = (raster.width() + kTileSide - 1) / kTileSide;
+  std::vector<TileMasks> parts(static_cast<std::size_t>(tile_rows));
+  tbb::parallel_for(0, tile_rows, [&](int y) {
+    TileMasks& part = parts[static_cast<std::size_t>(y)];
+    part.mask_begin.push_back(0);
+    std::vector<float> scratch(static_cast<std::size_t>(masks_.mask_count) * kTileTexels, 0.0f);
+    for (int x = 0; x < tile_columns; ++x) addTile(samples, raster.width(), rows, {x, y}, scratch, part);
+  });
+  TileMasks whole;
+  whole.mask_begin.push_back(0);
+  for (const TileMasks& part : parts) append(whole, part);
+  return whole;
+}
+
+compress::TileMasks coverageTiles(const UvRaster& raster, int begin, int end) {
+  const std::vector<TexelSample> samples = raster.coveredRows(begin, end);
+  const int tile_columns = (raster.width() + kTileSide - 1) / kTileSide;
+  TileMasks out;
+  std::vector<float> weights(kTileTexels);
+  for (int tile_y = 0; tile_y * kTileSide < end - begin; ++tile_y) {
+    const int y_end = std::min(end - begin, (tile_y + 1) * kTileSide);
+    for (int tile_x = 0; tile_x < tile_columns; ++tile_x) {
+      const int x_end = std::min(raster.width(), (tile_x + 1) * kTileSide);
+      std::fill(weights.begin(), weights.end(), 0.0f);
+      bool any = false;
+      for (int y = tile_y * kTileSide; y < y_end; ++y) {
+        for (int x = tile_x * kTileSide; x < x_end; ++x) {
+          const auto texel =
+              static_cast<std::size_t>(y) * static_cast<std::size_t>(raster.width()) + static_cast<std::size_t>(x);
+          if (samples[texel].kind != TexelSample::Kind::kCovered) continue;
+          weights[static_cast<std::size_t>((y - tile_y * kTileSide) * kTileSide + x - tile_x * kTileSide)] = 1.0f;
+          any = true;
+        }
+      }
+      if (!any) continue;
+      out.tiles.push_back({tile_x, tile_y});
+      out.texel_weights.insert(out.texel_weights.end(), weights.begin(), weights.end());
+    }
+  }
+  out.mask_begin.assign(out.tiles.size() + 1, 0);
+  return out;
+}
+
+void markOverlaps(const compress::TileMasks& tiles, int mask_count, std::vector<bool>& overlaps) {
+  for (std::size_t t = 0; t < tiles.tiles.size(); ++t) {
+    for (int a = tiles.mask_begin[t]; a < tiles.mask_begin[t + 1]; ++a) {
+      for (int b = a + 1; b < tiles.mask_begin[t + 1]; ++b) {
+        const int k = tiles.mask_index[static_cast<std::size_t>(a)];
+        const int l = tiles.mask_index[static_cast<std::size_t>(b)];
+        overlaps[static_cast<std::size_t>(k) * static_cast<std::size_t>(mask_count) + static_cast<std::size_t>(l)] =
+            true;
+      }
+    }
+  }
+}
+
+std::vector<compress::MaskPair> overlappingPairs(const std::vector<bool>& overlaps, int mask_count) {
+  std::vector<compress::MaskPair> pairs;
+  for (int k = 0; k < mask_count; ++k) {
+    for (int l = k + 1; l < mask_count; ++l) {
+      if (overlaps[static_cast<std::size_t>(k) * static_cast<std::size_t>(mask_count) + static_cast<std::size_t>(l)]) {
+        pairs.push_back({k, l});
+      }
+    }
+  }
+  return pairs;
+}
+
+}  // namespace facezip::raster

@@ -1,0 +1,54 @@
+// texel_masks.hpp - masks from the vertices of the region to the texels of a band and the cells of the weight grid.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "compress/gram_matrices.hpp"
+#include "compress/tile_band.hpp"
+#include "facezip/geometry/face_region.hpp"
+#include "facezip/geometry/mask_weights.hpp"
+#include "raster/uv_raster.hpp"
+
+namespace facezip::raster {
+
+/// Interpolates vertex masks linearly over triangles. Rows sum to one at the vertices, so they do at every texel: the
+/// division by the sum over masks (FaceZip 3.1, "normalizing the solution in the UV space") is already done.
+class TexelMasks {
+ public:
+  /// mesh    the mesh that the raster was made of
+  /// region  its region; masks are rows of `masks`, one per region vertex. All three are kept by reference.
+  TexelMasks(const geometry::TriangleMesh& mesh, const geometry::RegionMesh& region,
+             const geometry::MaskWeights& masks);
+
+  int maskCount() const { return masks_.mask_count; }
+
+  /// Cuts rows [begin, end) of the raster into tiles and gives each the masks that are above zero at one of its texels.
+  /// Tiles with neither covered nor gutter texels are left out.
+  compress::TileMasks tiles(const UvRaster& raster, int begin, int end) const;
+
+  /// Adds the masks of `sample`, times `weight`, to accumulator[mask] (K floats); appends masks met for the first time
+  /// (those at 0 before) to `touched`.
+  void accumulate(const TexelSample& sample, float weight, std::span<float> accumulator,
+                  std::vector<int>& touched) const;
+
+ private:
+  void addTile(const std::vector<TexelSample>& samples, int width, int rows, compress::TilePosition position,
+               std::vector<float>& scratch, compress::TileMasks& out) const;
+
+  const geometry::TriangleMesh& mesh_;
+  const geometry::RegionMesh& region_;
+  const geometry::MaskWeights& masks_;
+};
+
+/// The tiles of rows [begin, end) that hold covered texels, with texel weights and no masks: what sums over the face
+/// need.
+compress::TileMasks coverageTiles(const UvRaster& raster, int begin, int end);
+
+/// Adds the pairs of masks that share a tile to `overlaps` (K x K, upper triangle).
+void markOverlaps(const compress::TileMasks& tiles, int mask_count, std::vector<bool>& overlaps);
+
+/// The marked pairs, rising by (k, l).
+std::vector<compress::MaskPair> overlappingPairs(const std::vector<bool>& overlaps, int mask_count);
+
+}  // namespace facezip::raster

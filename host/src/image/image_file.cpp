@@ -66,9 +66,10 @@ void requireFinite(const fs::path& path, const ImageShape& shape, int first_row,
     if (std::isfinite(samples[i])) continue;
     const std::size_t texel = i / static_cast<std::size_t>(shape.channels);
     const std::size_t width = static_cast<std::size_t>(shape.width);
-    throw InputError({path.string(),
-                      fmt::format("row {}, column {}", static_cast<std::size_t>(first_row) + texel / width, texel % width),
-                      "finite samples", std::isnan(samples[i]) ? "NaN" : "infinity", "repair the image"});
+    throw InputError(
+        {path.string(),
+         fmt::format("row {}, column {}", static_cast<std::size_t>(first_row) + texel / width, texel % width),
+         "finite samples", std::isnan(samples[i]) ? "NaN" : "infinity", "repair the image"});
   }
 }
 
@@ -107,7 +108,8 @@ void ImageReader::readRows(int begin, int end, std::span<std::byte> out) {
     readTiledRows(begin, end, out);
   } else {
     const int y = input_->file->spec().y;
-    if (!input_->file->read_scanlines(0, 0, y + begin, y + end, 0, 0, shape_.channels, oiioType(shape_.type), out.data())) {
+    if (!input_->file->read_scanlines(0, 0, y + begin, y + end, 0, 0, shape_.channels, oiioType(shape_.type),
+                                      out.data())) {
       throw InputError({path_.string(), fmt::format("rows {} to {}", begin, end - 1), "readable image data",
                         reason(input_->file->geterror()), "the file is truncated or damaged: export it again"});
     }
@@ -132,7 +134,8 @@ void ImageReader::readTiledRows(int begin, int end, std::span<std::byte> out) {
     }
     const std::size_t row_bytes = shape_.rowBytes();
     std::memcpy(out.data() + static_cast<std::size_t>(row - begin) * row_bytes,
-                input_->tile_rows.data() + static_cast<std::size_t>(row - input_->tile_rows_begin) * row_bytes, row_bytes);
+                input_->tile_rows.data() + static_cast<std::size_t>(row - input_->tile_rows_begin) * row_bytes,
+                row_bytes);
   }
 }
 

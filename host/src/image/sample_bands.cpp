@@ -1,0 +1,134 @@
+#include "image/sample_bands.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/statvfs.h>
+#include <tbb/parallel_for.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <future>
+
+namespace facezip::image {
+namespace fs = std::filesystem;
+
+ScratchFile::ScratchFile(const fs::path& directory) : directory_(directory) {
+  std::string pattern = (directory / ".facezip-scratch-XXXXXX").string();
+  descriptor_ = ::mkstemp(pattern.data());
+  if (descriptor_ < 0) throw OutputError(directory, std::strerror(errno), "choose another --output");
+  ::unlink(pattern.c_str());
+}
+
+ScratchFile::~ScratchFile() { ::close(descriptor_); }
+
+void ScratchFile::write(std::size_t offset, std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0)
+      throw OutputError(directory_, fmt::format("scratch file: {}", std::strerror(errno)), "free some space");
+    offset += static_cast<std::size_t>(written);
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+void ScratchFile::read(std::size_t offset, std::span<std::byte> bytes) const {
+  while (!bytes.empty()) {
+    const ssize_t got = ::pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0)
+      throw OutputError(directory_, fmt::format("scratch file: {}", got == 0 ? "cut short" : std::strerror(errno)));
+    offset += static_cast<std::size_t>(got);
+    bytes = bytes.subspan(static_cast<std::size_t>(got));
+  }
+}
+
+std::size_t ScratchFile::freeBytes(const fs::path& directory) {
+  struct statvfs status {};
+  if (::statvfs(directory.c_str(), &status) != 0) return 0;
+  return static_cast<std::size_t>(status.f_bavail) * static_cast<std::size_t>(status.f_frsize);
+}
+
+namespace {
+
+std::string describe(const ImageShape& shape) {
+  return fmt::format("{} x {}, {} channel{}, {}", shape.width, shape.height, shape.channels,
+                     shape.channels == 1 ? "" : "s", sampleTypeName(shape.type));
+}
+
+void requireLikeNeutral(const ImageReader& texture, const ImageReader& neutral, const std::string& name) {
+  const ImageShape& got = texture.shape();
+  const ImageShape& expected = neutral.shape();
+  if (got == expected) return;
+  std::string cure = "export both alike";
+  if (got.width != expected.width || got.height != expected.height) cure = "resize one of them";
+  throw InputError({texture.path().string(), fmt::format("expression \"{}\"", name),
+                    fmt::format("{} as {} has", describe(expected), neutral.path().filename().string()), describe(got),
+                    cure});
+}
+
+}  // namespace
+
+SampleBands::SampleBands(const CaptureMap& map, const std::vector<std::string>& names) : map_(map) {
+  assert(names.size() == map.expressions.size());
+  readers_.emplace_back(map.neutral);
+  shape_ = readers_.front().shape();
+  if (shape_.channels < 1 || shape_.channels > 4) {
+    throw InputError(
+        {map.neutral.string(), "", "1 to 4 channels", fmt::format("{} channels", shape_.channels), "split the image"});
+  }
+  for (std::size_t n = 0; n < names.size(); ++n) {
+    readers_.emplace_back(map.expressions[n]);
+    requireLikeNeutral(readers_.back(), readers_.front(), names[n]);
+  }
+}
+
+std::size_t SampleBands::bandBytes(int rows) const {
+  return readers_.size() * static_cast<std::size_t>(rows) * shape_.rowBytes();
+}
+
+std::size_t SampleBands::decodedBytes() const { return bandBytes(shape_.height); }
+
+void SampleBands::decodeBand(int begin, int end, std::span<std::byte> out) {
+  const std::size_t image_bytes = static_cast<std::size_t>(end - begin) * shape_.rowBytes();
+  tbb::parallel_for(std::size_t{0}, readers_.size(), [&](std::size_t i) {
+    readers_[i].readRows(begin, end, out.subspan(i * image_bytes, image_bytes));
+  });
+}
+
+void SampleBands::readBand(int begin, int end, std::span<std::byte> out) {
+  const std::size_t offset = bandBytes(begin);  // bands before this one hold all their textures
+  if (kept_) {
+    scratch_->read(offset, out);
+    return;
+  }
+  decodeBand(begin, end, out);
+  if (scratch_) scratch_->write(offset, out);
+}
+
+void SampleBands::forEachBand(int band_rows, Progress& progress, const std::function<void(const SampleBand&)>& visit) {
+  const auto load = [this, band_rows](int begin, std::vector<std::byte>& buffer) {
+    const int end = std::min(begin + band_rows, shape_.height);
+    buffer.resize(bandBytes(end - begin));
+    readBand(begin, end, buffer);
+  };
+  std::future<void> next = std::async(std::launch::async, load, 0, std::ref(buffers_[0]));
+  int current = 0;
+  for (int begin = 0; begin < shape_.height; begin += band_rows) {
+    const auto start = std::chrono::steady_clock::now();
+    next.get();
+    wait_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    progress.checkCancelled();
+    const int end = std::min(begin + band_rows, shape_.height);
+    if (end < shape_.height) next = std::async(std::launch::async, load, end, std::ref(buffers_[1 - current]));
+    visit({begin, end, buffers_[current]});
+    current = 1 - current;
+  }
+  kept_ = scratch_ != nullptr;
+}
+
+}  // namespace facezip::image

@@ -1,0 +1,83 @@
+// sample_bands.hpp - the textures of one map, neutral and expressions together, in bands of rows.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "facezip/capture.hpp"
+#include "facezip/progress.hpp"
+#include "image/image_file.hpp"
+
+namespace facezip::image {
+
+/// A file without a name that holds decoded samples between passes: decoding costs far more than reading back, and what
+/// lies here is the kernel's to keep in memory or not. Gone when the process ends, however it ends.
+class ScratchFile {
+ public:
+  /// directory  where to make it; must be writable. Throws OutputError.
+  explicit ScratchFile(const std::filesystem::path& directory);
+  ~ScratchFile();
+  ScratchFile(const ScratchFile&) = delete;
+  ScratchFile& operator=(const ScratchFile&) = delete;
+
+  /// Throw OutputError when the disk is full or fails.
+  void write(std::size_t offset, std::span<const std::byte> bytes);
+  void read(std::size_t offset, std::span<std::byte> bytes) const;
+
+  /// Bytes free for a scratch file in `directory`.
+  static std::size_t freeBytes(const std::filesystem::path& directory);
+
+ private:
+  std::filesystem::path directory_;
+  int descriptor_ = -1;
+};
+
+/// One band: rows [begin, end) of the neutral, then of every expression, each row-major and interleaved.
+struct SampleBand {
+  int begin = 0;
+  int end = 0;
+  std::span<const std::byte> samples;
+};
+
+class SampleBands {
+ public:
+  /// Opens every texture of `map` and checks it against the neutral's. Throws InputError: another size, channel count
+  /// or sample type than the neutral's, more than four channels. names  the expressions' names, for messages
+  SampleBands(const CaptureMap& map, const std::vector<std::string>& names);
+
+  const ImageShape& shape() const { return shape_; }
+  int expressions() const { return static_cast<int>(map_.expressions.size()); }
+
+  /// Bytes of all textures, decoded.
+  std::size_t decodedBytes() const;
+
+  /// Keeps what the first pass decodes in a scratch file in `directory`, so that later passes read it from there.
+  void keepDecoded(const std::filesystem::path& directory) { scratch_ = std::make_unique<ScratchFile>(directory); }
+
+  /// Calls `visit` for each band from top to bottom. The next band is read while `visit` works on this one; textures
+  /// are decoded side by side. Every pass must use the same band_rows. Throws InputError for an unreadable texture,
+  /// what `visit` throws, and Cancelled.
+  void forEachBand(int band_rows, Progress& progress, const std::function<void(const SampleBand&)>& visit);
+
+  /// Seconds that forEachBand waited for samples, over all passes.
+  double waitSeconds() const { return wait_seconds_; }
+
+ private:
+  void readBand(int begin, int end, std::span<std::byte> out);
+  void decodeBand(int begin, int end, std::span<std::byte> out);
+  std::size_t bandBytes(int rows) const;
+
+  CaptureMap map_;
+  ImageShape shape_;
+  std::vector<ImageReader> readers_;
+  std::unique_ptr<ScratchFile> scratch_;
+  bool kept_ = false;  ///< a whole pass is in scratch_
+  std::vector<std::byte> buffers_[2];
+  double wait_seconds_ = 0.0;
+};
+
+}  // namespace facezip::image

@@ -29,8 +29,8 @@ struct BandShape {
 
   /// Bytes of the raw samples: neutral first, then the expressions, each `rows` rows.
   std::size_t sampleBytes() const {
-    return static_cast<std::size_t>(expressions + 1) * static_cast<std::size_t>(rows) * static_cast<std::size_t>(width) *
-           static_cast<std::size_t>(channels) * image::sampleBytes(sample_type);
+    return static_cast<std::size_t>(expressions + 1) * static_cast<std::size_t>(rows) *
+           static_cast<std::size_t>(width) * static_cast<std::size_t>(channels) * image::sampleBytes(sample_type);
   }
   /// Differences of 8-bit samples are exact in 16-bit integers; all others are floats. Both in units of 1/255.
   std::size_t differenceBytes() const { return sample_type == image::SampleType::kUint8 ? 2 : 4; }
@@ -39,11 +39,12 @@ struct BandShape {
 /// The tiles of a band that hold anything to do, and the masks that are active in each (host memory).
 /// Masks of tile t are entries mask_begin[t] .. mask_begin[t + 1] of mask_index and mask_weights.
 struct TileMasks {
-  std::vector<TilePosition> tiles;   ///< #tiles, in rising (y, x)
-  std::vector<int> mask_begin;       ///< #tiles + 1
-  std::vector<int> mask_index;       ///< rising inside a tile; values in [0, K)
-  std::vector<float> mask_weights;   ///< mask_index.size() x 256, M_k(p) in [0, 1], also in the gutter
-  std::vector<float> texel_weights;  ///< #tiles x 256, weight of a texel in every sum: 0 outside the covered texels (gutter too)
+  std::vector<TilePosition> tiles;  ///< #tiles, in rising (y, x)
+  std::vector<int> mask_begin;      ///< #tiles + 1
+  std::vector<int> mask_index;      ///< rising inside a tile; values in [0, K)
+  std::vector<float> mask_weights;  ///< mask_index.size() x 256, M_k(p) in [0, 1], also in the gutter
+  std::vector<float>
+      texel_weights;  ///< #tiles x 256, weight of a texel in every sum: 0 outside the covered texels (gutter too)
 };
 
 }  // namespace facezip::compress

@@ -1,0 +1,71 @@
+// compress.hpp - a capture in, a package out: the FaceZip method from textures on disk to a package on disk.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "facezip/capture.hpp"
+#include "facezip/device.hpp"
+#include "facezip/geometry/length.hpp"
+#include "facezip/progress.hpp"
+
+namespace facezip {
+
+struct CompressOptions {
+  /// How fragments are put together.
+  enum class Method {
+    kPaper,          ///< permutation of the clusters by coordinate descent (FaceZip, section 3.1)
+    kNoPermutation,  ///< clusters in the order of the clustering; the paper's ablation, for comparison only
+  };
+  Method method = Method::kPaper;
+  int weight_scale = 8;  ///< texels of the largest map per weight cell, per axis; 1 to 64
+  /// Poisson-disk radius of the mask samples; bare numbers are in the mesh's unit. The paper's 3 cm.
+  geometry::Length mask_radius{3.0, geometry::LengthUnit::kCentimetre};
+  std::optional<int> masks;                 ///< instead of the radius: exactly this many masks
+  double mask_cutoff = 0.01;                ///< mask weights below this are cut, so that a fragment has compact support
+  int restarts = 100;                       ///< of the permutation search, >= 1
+  int cluster_restarts = 64;                ///< of k-means, >= 1
+  std::uint64_t seed = 1;                   ///< of every random choice
+  std::uint64_t memory_bytes = 2ull << 30;  ///< bound on what the process keeps resident, host and device together
+  std::optional<std::string> unit;          ///< of the mesh, over what the capture states; "cm"
+  /// Which part of the face: "" the capture's own (face_region.txt, else coverage.png, else the whole mesh), "whole",
+  /// or a file of triangle indices (.txt) or a painted image.
+  std::string region;
+  std::optional<int> gutter;  ///< texels; default max(16, side / 64)
+};
+
+/// What a compression did, for --report and for tests.
+struct CompressReport {
+  int masks = 0;             ///< K
+  double mask_radius = 0.0;  ///< in the mesh's unit
+  std::string unit;          ///< of the mesh
+  bool unit_guessed = false;
+  std::uint64_t covered_texels = 0;  ///< of the first map
+  double cut_mass_mean = 0.0;        ///< share of a vertex's mask weight that the cutoff moved, mean
+  double cut_mass_max = 0.0;         ///< and largest
+  double active_masks_mean = 0.0;    ///< masks above zero at a vertex, after the cut
+  int overlapping_pairs = 0;
+  double permutation_cost = 0.0;                 ///< Eq. 3, each unordered pair once, in (1/255)^2
+  double permutation_cost_median = 0.0;          ///< median of the restarts' final costs
+  std::vector<double> restart_costs;             ///< final cost of every restart
+  std::vector<std::vector<double>> convergence;  ///< cost after each sweep, per restart
+  int band_rows = 0;
+  std::string decoded;  ///< how later passes read the textures: "scratch file" or "decoded again"
+  std::vector<std::pair<std::string, double>> seconds;  ///< wall time of each stage, in order
+  double read_seconds = 0.0;                            ///< of it: waiting for images to be decoded
+  std::uint64_t package_disk_bytes = 0;
+  std::string device;
+};
+
+/// Compresses `capture` into the directory `package`, which appears whole or not at all; an earlier package there is
+/// replaced. The same capture, options and device give the same bytes.
+/// Throws InputError (the capture, an option), DeviceError, OutputError, SolverError, Cancelled.
+CompressReport compressCapture(const Capture& capture, const std::filesystem::path& package,
+                               const CompressOptions& options, const Device& device, Progress& progress);
+
+}  // namespace facezip

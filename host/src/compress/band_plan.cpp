@@ -1,0 +1,63 @@
+#include "compress/band_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace facezip::compress {
+namespace {
+
+constexpr std::uint64_t kMiB = 1u << 20;
+/// What a process holds before the first texel: OpenCL's compiler, image libraries, the mesh and its factorisation; and
+/// the Gram stage's partial sums. Measured with PoCL 3.1 (about 190 MiB) and rounded up.
+constexpr std::uint64_t kProcessBytes = 256 * kMiB;
+/// Bands beyond this gain nothing: launches are already cheap beside the work, and caches grow cold.
+constexpr std::uint64_t kUsefulBandBytes = 96 * kMiB;
+constexpr int kTypicalMasksPerTile = 16;
+
+std::string mebibytes(std::uint64_t bytes) { return fmt::format("{} MiB", (bytes + kMiB - 1) / kMiB); }
+
+}  // namespace
+
+BandCost bandCost(const BandShape& shape, int textures, int mask_count) {
+  const auto texels = static_cast<std::uint64_t>((shape.width + kTileSide - 1) / kTileSide * kTileSide);
+  const auto channels = static_cast<std::uint64_t>(shape.channels);
+  const auto images = static_cast<std::uint64_t>(shape.expressions) + 1;
+  const auto sample = static_cast<std::uint64_t>(image::sampleBytes(shape.sample_type));
+  const std::uint64_t samples = texels * channels * images * sample;
+  const std::uint64_t differences = texels * channels * (images - 1) * shape.differenceBytes();
+  const std::uint64_t masks = texels * 4 * static_cast<std::uint64_t>(std::min(mask_count, kTypicalMasksPerTile) + 1);
+  const std::uint64_t raster = texels * 16 * 2;
+  const std::uint64_t outputs = texels * channels * static_cast<std::uint64_t>(textures) * (4 + 2);
+  BandCost cost;
+  // Samples: one band being decoded, one at work, one on the device. Masks: on the host and on the device.
+  cost.per_row = 3 * samples + differences + 2 * masks + raster + outputs;
+  cost.largest_buffer_per_row = std::max({samples, differences, masks, outputs});
+  return cost;
+}
+
+int planBandRows(const BandCost& cost, int height, std::uint64_t memory_bytes, std::uint64_t resident_bytes,
+                 const DeviceInfo& device) {
+  const std::uint64_t smallest_band = cost.per_row * kTileSide;
+  const std::uint64_t beside = kProcessBytes + resident_bytes;
+  if (memory_bytes < beside + smallest_band) {
+    throw InputError({"--memory", "", fmt::format("at least {} for this capture", mebibytes(beside + smallest_band)),
+                      mebibytes(memory_bytes), "raise it, or compress fewer maps at a time"});
+  }
+  const std::uint64_t largest_buffer = cost.largest_buffer_per_row * kTileSide;
+  if (largest_buffer > device.largest_allocation_bytes || smallest_band > device.global_memory_bytes) {
+    throw DeviceError(
+        "a band of 16 rows", 0,
+        fmt::format("needs {} in all and {} in one buffer; {} has {} and allows {}; choose another --device",
+                    mebibytes(smallest_band), mebibytes(largest_buffer), device.name,
+                    mebibytes(device.global_memory_bytes), mebibytes(device.largest_allocation_bytes)));
+  }
+  const std::uint64_t within_memory = (memory_bytes - beside) / cost.per_row;
+  const std::uint64_t within_device = std::min(device.global_memory_bytes / 2 / cost.per_row,
+                                               device.largest_allocation_bytes / cost.largest_buffer_per_row);
+  const std::uint64_t rows = std::min({within_memory, within_device, kUsefulBandBytes / cost.per_row});
+  const auto needed = static_cast<std::uint64_t>((height + kTileSide - 1) / kTileSide * kTileSide);
+  return static_cast<int>(std::clamp<std::uint64_t>(rows / kTileSide * kTileSide, kTileSide, needed));
+}
+
+}  // namespace facezip::compress

@@ -1,0 +1,29 @@
+// band_plan.hpp - how many rows a band has, so that the work stays within the memory it was given.
+#pragma once
+
+#include <cstdint>
+
+#include "compress/tile_band.hpp"
+#include "facezip/device.hpp"
+
+namespace facezip::compress {
+
+/// What a band of a map keeps at once, per row of the image, on host and device together.
+struct BandCost {
+  std::uint64_t per_row = 0;
+  std::uint64_t largest_buffer_per_row = 0;  ///< of the buffers on the device
+};
+
+/// shape       of the map; its rows are ignored
+/// textures    C
+/// mask_count  K; a tile is taken to hold min(K, 16) of them, twice what 3 cm masks show on a head
+BandCost bandCost(const BandShape& shape, int textures, int mask_count);
+
+/// Rows of a band: a multiple of 16, at least 16, at most what the whole image needs.
+/// memory_bytes   what the process may keep resident in all
+/// resident_bytes what it keeps beside the bands (weight maps, meshes; the libraries' own is added here)
+/// Throws InputError if `memory_bytes` does not hold a band of 16 rows, DeviceError if the device does not.
+int planBandRows(const BandCost& cost, int height, std::uint64_t memory_bytes, std::uint64_t resident_bytes,
+                 const DeviceInfo& device);
+
+}  // namespace facezip::compress

@@ -1,0 +1,122 @@
+#include "compress/face.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "facezip/geometry/obj_io.hpp"
+#include "facezip/geometry/topology.hpp"
+#include "image/image_file.hpp"
+
+namespace facezip::compress {
+namespace fs = std::filesystem;
+namespace {
+
+/// Full scale is 1.
+double firstChannel(const image::Image& picture, int x, int y) {
+  const std::size_t texel =
+      (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.shape.width) + static_cast<std::size_t>(x)) *
+      static_cast<std::size_t>(picture.shape.channels);
+  switch (picture.shape.type) {
+    case image::SampleType::kUint8:
+      return std::to_integer<int>(picture.samples[texel]) / 255.0;
+    case image::SampleType::kUint16:
+      return reinterpret_cast<const std::uint16_t*>(picture.samples.data())[texel] / 65535.0;
+    case image::SampleType::kFloat32:
+      break;
+  }
+  return reinterpret_cast<const float*>(picture.samples.data())[texel];
+}
+
+std::vector<int> paintedRegion(const geometry::TriangleMesh& mesh, const fs::path& file) {
+  const image::Image picture = image::readImage(file);
+  const int width = picture.shape.width;
+  const int height = picture.shape.height;
+  std::vector<int> region = geometry::regionFromPredicate(mesh, [&](double u, double v) {
+    const int x = std::clamp(static_cast<int>(std::floor(u * width)), 0, width - 1);
+    const int y = std::clamp(static_cast<int>(std::floor((1.0 - v) * height)), 0, height - 1);
+    return firstChannel(picture, x, y) > 0.5;
+  });
+  if (region.empty()) {
+    throw InputError({file.string(), "", "a painted part (brighter than half) that covers triangles of the mesh",
+                      "an empty region", "paint the part of the face that changes white"});
+  }
+  return region;
+}
+
+std::vector<int> regionFromFile(const geometry::TriangleMesh& mesh, const fs::path& file) {
+  if (file.extension() == ".txt") return geometry::readTriangleIndices(file, static_cast<int>(mesh.triangles.rows()));
+  return paintedRegion(mesh, file);
+}
+
+}  // namespace
+
+Face readFace(const Capture& capture, const std::string& region) {
+  Face face;
+  face.mesh = geometry::readObj(capture.neutral_mesh);
+  std::optional<fs::path> file;
+  if (region.empty()) {
+    file = capture.face_region ? capture.face_region : capture.coverage;
+  } else if (region != "whole") {
+    file = region;
+  }
+  // UVs first: a painted region cannot be looked up without them.
+  if (face.mesh.uv_triangles.rows() == 0) geometry::requireUvs(face.mesh, capture.neutral_mesh.string());
+  face.region = file ? regionFromFile(face.mesh, *file) : geometry::wholeMeshRegion(face.mesh);
+  face.region_description = file ? file->filename().string() : "whole mesh";
+  geometry::requireUvs(face.mesh, capture.neutral_mesh.string(), face.region);
+  return face;
+}
+
+void requireExpressionTopology(const Capture& capture, const geometry::TriangleMesh& neutral, Progress& progress) {
+  progress.stage("checking meshes", capture.expression_meshes.size());
+  tbb::parallel_for(std::size_t{0}, capture.expression_meshes.size(), [&](std::size_t n) {
+    const fs::path& file = capture.expression_meshes[n];
+    if (file.empty()) return;
+    progress.checkCancelled();
+    geometry::requireSameTopology(neutral, capture.neutral_mesh.string(), geometry::readObj(file), file.string());
+  });
+}
+
+namespace {
+
+/// Finds the mesh's unit where a length in a physical unit has to be applied to it.
+void resolveUnit(const Capture& capture, const Face& face, const CompressOptions& options, FaceMasks& result,
+                 Progress& progress) {
+  const std::string stated = options.unit.value_or(capture.unit);
+  if (!stated.empty()) {
+    result.unit = geometry::parseUnit(stated);
+    return;
+  }
+  if (options.masks || !options.mask_radius.unit) return;
+  const geometry::UnitGuess guess = geometry::guessUnit(face.mesh);
+  result.unit = guess.unit;
+  result.unit_guessed = true;
+  progress.note(guess.explanation);
+}
+
+geometry::SurfaceSamples sampleRegion(const FaceMasks& face, const CompressOptions& options) {
+  if (options.masks) return geometry::sampleByCount(face.region, *options.masks, options.seed);
+  const geometry::Length& radius = options.mask_radius;
+  const double in_mesh_units = radius.unit ? geometry::toMeshUnits(radius, face.unit.value()) : radius.value;
+  return geometry::samplePoissonDisk(face.region, in_mesh_units, options.seed);
+}
+
+}  // namespace
+
+FaceMasks makeFaceMasks(const Capture& capture, const Face& face, const CompressOptions& options, Progress& progress) {
+  FaceMasks result;
+  progress.stage("masks", 0);
+  resolveUnit(capture, face, options, result, progress);
+  result.region = geometry::extractRegion(face.mesh, face.region);
+  result.samples = sampleRegion(result, options);
+  progress.checkCancelled();
+  const Eigen::MatrixXd phi = geometry::solveMaskWeights(result.region, result.samples.vertices);
+  result.masks = geometry::compactMaskWeights(phi, options.mask_cutoff);
+  return result;
+}
+
+}  // namespace facezip::compress

@@ -1,0 +1,35 @@
+// map_set.hpp - the maps of a capture opened for compression: their textures, rasters and place on the weight grid.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "compress/face.hpp"
+#include "facezip/capture.hpp"
+#include "image/sample_bands.hpp"
+#include "raster/uv_raster.hpp"
+
+namespace facezip::compress {
+
+/// One map, opened.
+struct OpenMap {
+  const CaptureMap* source = nullptr;
+  std::unique_ptr<image::SampleBands> samples;
+  std::shared_ptr<const raster::UvRaster> raster;  ///< shared by the maps of one size
+  int weight_scale = 0;                            ///< texels of this map per weight cell, per axis
+};
+
+struct MapSet {
+  std::vector<OpenMap> maps;
+  std::size_t reference =
+      0;  ///< the largest map, whose texels weight_scale counts; the weight grid is made at its size
+};
+
+/// Opens every texture of the capture, checks them and makes one raster per size.
+/// weight_scale  of the largest map; the others' follow, since all maps share one weight grid
+/// gutter        texels; none: max(16, side / 64)
+/// Throws InputError: a texture that does not fit its neutral, maps whose sizes do not share a weight grid.
+MapSet openMaps(const Capture& capture, const Face& face, int weight_scale, std::optional<int> gutter);
+
+}  // namespace facezip::compress

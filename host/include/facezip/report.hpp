@@ -1,0 +1,19 @@
+// report.hpp - what a compression or an evaluation found, as JSON (docs/reports.md has the schema).
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "facezip/compress.hpp"
+#include "facezip/evaluate.hpp"
+
+namespace facezip {
+
+/// JSON text of a report, ending in a line end.
+std::string toJson(const CompressReport& report);
+std::string toJson(const Evaluation& evaluation);
+
+/// Writes a report so that a reader sees all of it or none; makes the directories above it. Throws OutputError.
+void writeReport(const std::filesystem::path& file, const std::string& json_text);
+
+}  // namespace facezip

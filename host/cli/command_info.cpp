@@ -1,0 +1,43 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <memory>
+
+#include "commands.hpp"
+#include "facezip/package.hpp"
+#include "option_types.hpp"
+
+namespace facezip::cli {
+namespace {
+
+const char* sampleName(SampleType type) {
+  return type == SampleType::kUint8 ? "8-bit" : type == SampleType::kUint16 ? "16-bit" : "float";
+}
+
+void printPackage(const Package& package) {
+  const PackageWeights& weights = package.weights();
+  fmt::print("{}: {} expressions, {} difference textures a map, made by {}\n", package.name(),
+             package.expressions().size(), package.differences(), package.description().generator);
+  for (const PackageMap& map : package.maps()) {
+    fmt::print("  map {}: {} x {}, {} channel{}, {}{}{}, {} texels to a weight texel\n", map.name, map.width,
+               map.height, map.channels, map.channels == 1 ? "" : "s", sampleName(map.sample_type),
+               map.colour_space.empty() ? "" : ", ", map.colour_space, map.weight_scale);
+  }
+  fmt::print("  weights: {} x {} for each expression, {} x {} tiles in {}\n", weights.tile_width, weights.tile_height,
+             weights.columns, weights.rows, fmt::join(weights.files, ", "));
+  fmt::print("  memory: {} at run time, {} on disk\n", formatMegabytes(package.bytesInMemory()),
+             formatMegabytes(package.bytesOnDisk()));
+  fmt::print("  expressions: {}\n", fmt::join(package.expressions(), ", "));
+  fmt::print("  method: {}\n", package.methodJson());
+}
+
+}  // namespace
+
+void addInfoCommand(CLI::App& app, const CommonOptions&) {
+  const auto package = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand("info", "Checks a package and says what it holds");
+  command->add_option("package", *package, "Directory of the package")->required()->type_name("PACKAGE");
+  command->callback([package] { printPackage(Package::open(*package)); });
+}
+
+}  // namespace facezip::cli

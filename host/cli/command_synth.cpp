@@ -1,0 +1,34 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "commands.hpp"
+#include "facezip/synth.hpp"
+#include "shared_options.hpp"
+#include "terminal.hpp"
+
+namespace facezip::cli {
+
+void addSynthCommand(CLI::App& app, const CommonOptions& common) {
+  struct Arguments {
+    std::string output;
+    SynthOptions options;
+  };
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand(
+      "synth", "Writes the built-in capture: a procedural head with textures that follow its deformation");
+  command->add_option("-o,--output", arguments->output, "Directory of the capture")->required()->type_name("DIR");
+  command->add_option("--resolution", arguments->options.resolution, "Side of the textures in texels")
+      ->capture_default_str();
+  command->add_option("--expressions", arguments->options.expressions, "Number of expressions")->capture_default_str();
+  addMapsOption(*command, arguments->options.maps, "Maps to make: albedo, normal, specular, roughness, displacement");
+  command->add_option("--seed", arguments->options.seed, "Seed of the face")->capture_default_str();
+  command->callback([arguments, &common] {
+    TerminalProgress progress(common.quiet);
+    const CancelOnSignal cancel(progress);
+    synthesizeCapture(arguments->output, arguments->options, progress);
+    fmt::print("{}\n", arguments->output);
+  });
+}
+
+}  // namespace facezip::cli

@@ -1,0 +1,87 @@
+#include "contact_sheet.hpp"
+
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace facezip::cli {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int kTile = 256;
+constexpr int kGap = 6;
+constexpr int kLabel = 22;
+constexpr int kRowsOfExpressions = 6;
+
+/// Reads an image as RGB at the size of a tile.
+OIIO::ImageBuf tile(const fs::path& file) {
+  OIIO::ImageBuf image(file.string());
+  if (!image.read(0, 0, true, OIIO::TypeDesc::FLOAT)) {
+    throw InputError({file.string(), "", "a readable image", image.geterror(), ""});
+  }
+  const int channels = image.nchannels();
+  const int order[3] = {0, channels >= 3 ? 1 : 0, channels >= 3 ? 2 : 0};
+  image = OIIO::ImageBufAlgo::channels(image, 3, order);
+  return OIIO::ImageBufAlgo::resize(image, "", 0.0f, OIIO::ROI(0, kTile, 0, kTile, 0, 1, 0, 3));
+}
+
+OIIO::ImageBuf amplifiedDifference(const OIIO::ImageBuf& a, const OIIO::ImageBuf& b) {
+  constexpr float kGain = 8.0f;
+  const OIIO::ImageBuf difference = OIIO::ImageBufAlgo::sub(b, a);
+  return OIIO::ImageBufAlgo::add(OIIO::ImageBufAlgo::mul(difference, kGain), 0.5f);
+}
+
+class Sheet {
+ public:
+  Sheet(int columns, int rows)
+      : image_(OIIO::ImageSpec(columns * (kTile + kGap) + kGap, rows * (kTile + kLabel + kGap) + kGap, 3,
+                               OIIO::TypeDesc::UINT8)) {
+    OIIO::ImageBufAlgo::fill(image_, {0.13f, 0.13f, 0.14f});
+  }
+
+  void place(int column, int row, const OIIO::ImageBuf& picture, const std::string& label) {
+    const int x = kGap + column * (kTile + kGap);
+    const int y = kGap + row * (kTile + kLabel + kGap);
+    OIIO::ImageBufAlgo::paste(image_, x, y + kLabel, 0, 0, picture);
+    // Text needs a font; a sheet without labels is still worth having.
+    OIIO::ImageBufAlgo::render_text(image_, x + 2, y + kLabel - 6, label, 14, "DejaVuSans", {0.9f, 0.9f, 0.9f});
+  }
+
+  void write(const fs::path& file) const {
+    if (!image_.write(file.string())) throw OutputError(file, image_.geterror());
+  }
+
+ private:
+  OIIO::ImageBuf image_;
+};
+
+}  // namespace
+
+void writeContactSheet(const fs::path& file, const Capture& capture, const Package& package, const fs::path& decoded) {
+  const CaptureMap& map = capture.maps.front();
+  const PackageMap& packed = package.maps()[static_cast<std::size_t>(package.mapIndex(map.name))];
+  const int textures = package.differences();
+  const int rows = std::min<int>(kRowsOfExpressions, static_cast<int>(capture.expressions.size()));
+  Sheet sheet(std::max(3, textures + 1), rows + 1);
+  sheet.place(0, 0, tile(package.directory() / packed.neutral_file), "neutral");
+  for (int i = 0; i < textures; ++i) {
+    sheet.place(i + 1, 0, tile(package.directory() / packed.differences[static_cast<std::size_t>(i)].file),
+                fmt::format("difference texture {}", i));
+  }
+  for (int row = 0; row < rows; ++row) {
+    const std::size_t n = static_cast<std::size_t>(row) * capture.expressions.size() / static_cast<std::size_t>(rows);
+    const std::string& name = capture.expressions[n];
+    const OIIO::ImageBuf original = tile(map.expressions[n]);
+    const OIIO::ImageBuf restored = tile(decoded / map.name / (name + ".png"));
+    sheet.place(0, row + 1, original, name);
+    sheet.place(1, row + 1, restored, "from the package");
+    sheet.place(2, row + 1, amplifiedDifference(original, restored), "difference x 8");
+  }
+  sheet.write(file);
+}
+
+}  // namespace facezip::cli

@@ -1,0 +1,73 @@
+// facezip: one command with verbs.
+#include <fmt/format.h>
+
+#include <exception>
+#include <new>
+
+#include "commands.hpp"
+#include "exit_codes.hpp"
+#include "facezip/device.hpp"
+#include "facezip/error.hpp"
+#include "facezip/progress.hpp"
+#include "facezip/version.hpp"
+
+namespace facezip::cli {
+namespace {
+
+int fail(ExitCode code, const char* what) {
+  fmt::print(stderr, "facezip: error: {}\n", what);
+  return code;
+}
+
+/// Runs the parsed command and turns what it throws into one line and an exit code.
+int runCommand(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+    return kExitSuccess;
+  } catch (const CLI::Success& request) {
+    return app.exit(request);  // --help, --version
+  } catch (const CLI::ParseError& error) {
+    app.exit(error);
+    return kExitUsage;
+  } catch (const Cancelled&) {
+    return fail(kExitCancelled, "cancelled; nothing was written");
+  } catch (const InputError& error) {
+    return fail(kExitInput, error.what());
+  } catch (const DeviceError& error) {
+    return fail(kExitDevice, error.what());
+  } catch (const OutputError& error) {
+    return fail(kExitOutput, error.what());
+  } catch (const SolverError& error) {
+    return fail(kExitSolver, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(kExitInternal, "out of memory; lower --memory");
+  } catch (const std::exception& error) {
+    return fail(kExitInternal, error.what());
+  }
+}
+
+}  // namespace
+}  // namespace facezip::cli
+
+int main(int argc, char** argv) {
+  using namespace facezip::cli;
+  CLI::App app{
+      "Compresses the textures of facial blendshapes into a neutral, a few difference textures and weight maps."};
+  app.name("facezip");
+  app.set_version_flag("--version", "facezip " FACEZIP_VERSION);
+  app.require_subcommand(1);
+  app.failure_message(CLI::FailureMessage::simple);
+  app.get_formatter()->column_width(34);
+  CommonOptions common;
+  app.add_flag("-q,--quiet", common.quiet, "No progress and no notes on standard error");
+  app.fallthrough();
+  addSynthCommand(app, common);
+  addCompressCommand(app, common);
+  addReconstructCommand(app, common);
+  addBlendCommand(app, common);
+  addEvaluateCommand(app, common);
+  addInfoCommand(app, common);
+  addDevicesCommand(app, common);
+  addDemoCommand(app, common);
+  return runCommand(app, argc, argv);
+}

@@ -1,0 +1,31 @@
+#include "option_types.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <map>
+
+#include "facezip/error.hpp"
+
+namespace facezip::cli {
+
+std::uint64_t parseBytes(const std::string& option, const std::string& text) {
+  static const std::map<std::string, double> factors = {
+      {"", 1.0},     {"B", 1.0},       {"kB", 1e3},        {"MB", 1e6},
+      {"GB", 1e9},   {"KiB", 1024.0},  {"MiB", 1048576.0}, {"GiB", 1073741824.0},
+      {"K", 1024.0}, {"M", 1048576.0}, {"G", 1073741824.0}};
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const std::string unit(end, text.data() + text.size());
+  const auto factor = factors.find(unit);
+  if (error != std::errc() || factor == factors.end() || !std::isfinite(number) || number * factor->second < 1.0 ||
+      number * factor->second > 1e18) {
+    throw InputError({option, "", "a size such as 2GiB or 512MiB", text, ""});
+  }
+  return static_cast<std::uint64_t>(number * factor->second);
+}
+
+std::string formatMegabytes(std::uint64_t bytes) { return fmt::format("{:.2f} MB", static_cast<double>(bytes) / 1e6); }
+
+}  // namespace facezip::cli

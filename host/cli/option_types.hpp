@@ -1,0 +1,15 @@
+// option_types.hpp - values of options that are more than a number or a word.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace facezip::cli {
+
+/// "2GiB", "512MiB", "2GB", "1000000": a number of bytes. Throws InputError naming `option`.
+std::uint64_t parseBytes(const std::string& option, const std::string& text);
+
+/// 1234567 as "1.23 MB" (decimal, as the paper's tables count).
+std::string formatMegabytes(std::uint64_t bytes);
+
+}  // namespace facezip::cli

@@ -1,0 +1,75 @@
+#include "shared_options.hpp"
+
+#include "option_types.hpp"
+
+namespace facezip::cli {
+
+void addDeviceOption(CLI::App& command, std::string& selector) {
+  command
+      .add_option("--device", selector,
+                  "OpenCL device: auto, gpu, cpu, PLATFORM:DEVICE or part of a name (see `facezip devices`)")
+      ->type_name("SELECTOR")
+      ->capture_default_str();
+}
+
+void addMemoryOption(CLI::App& command, std::string& memory) {
+  command.add_option("--memory", memory, "What the process may keep resident, such as 2GiB")
+      ->type_name("SIZE")
+      ->capture_default_str();
+}
+
+void addMapsOption(CLI::App& command, std::vector<std::string>& maps, const std::string& description) {
+  command.add_option("--maps", maps, description)->type_name("NAME,...")->delimiter(',');
+}
+
+void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
+  CompressOptions& options = arguments.options;
+  command.add_option("--method", arguments.method, "paper: the FaceZip method; no-permutation: its ablation")
+      ->check(CLI::IsMember({"paper", "no-permutation"}))
+      ->capture_default_str();
+  command
+      .add_option("--weight-scale", options.weight_scale, "Texels of the largest map per weight texel, along each axis")
+      ->capture_default_str();
+  CLI::Option* radius =
+      command
+          .add_option("--mask-radius", arguments.mask_radius,
+                      "Distance between mask samples: 3cm, 0.03m; a bare number is in the mesh's unit")
+          ->type_name("LENGTH")
+          ->capture_default_str();
+  command.add_option("--masks", arguments.masks, "Number of masks, instead of their distance")
+      ->excludes(radius)
+      ->check(CLI::PositiveNumber);
+  command.add_option("--mask-cutoff", options.mask_cutoff, "Mask weights below this are cut")->capture_default_str();
+  command.add_option("--restarts", options.restarts, "Random starts of the permutation search")->capture_default_str();
+  command.add_option("--cluster-restarts", options.cluster_restarts, "Random starts of the clustering of each mask")
+      ->capture_default_str();
+  command.add_option("--seed", options.seed, "Seed of every random choice")->capture_default_str();
+  command.add_option("--unit", arguments.unit, "Unit of the meshes (mm, cm, m, in, ...), over what the capture states")
+      ->type_name("UNIT");
+  command
+      .add_option("--region", options.region,
+                  "Part of the face that changes: a file of triangle indices (.txt), a painted image, or whole")
+      ->type_name("FILE");
+  command
+      .add_option("--gutter", arguments.gutter,
+                  "Texels around UV islands that get masks too (default: 1/64 of the side, at least 16)")
+      ->check(CLI::NonNegativeNumber);
+  addMemoryOption(command, arguments.memory);
+}
+
+CompressOptions parseCompressOptions(const CompressArguments& arguments) {
+  CompressOptions options = arguments.options;
+  options.method =
+      arguments.method == "paper" ? CompressOptions::Method::kPaper : CompressOptions::Method::kNoPermutation;
+  options.mask_radius = geometry::parseLength(arguments.mask_radius);
+  if (arguments.masks > 0) options.masks = arguments.masks;
+  if (arguments.gutter >= 0) options.gutter = arguments.gutter;
+  if (!arguments.unit.empty()) {
+    geometry::parseUnit(arguments.unit);
+    options.unit = arguments.unit;
+  }
+  options.memory_bytes = parseBytes("--memory", arguments.memory);
+  return options;
+}
+
+}  // namespace facezip::cli

@@ -1,0 +1,33 @@
+// shared_options.hpp - options that several commands take, declared once.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "facezip/compress.hpp"
+
+namespace facezip::cli {
+
+/// --device
+void addDeviceOption(CLI::App& command, std::string& selector);
+/// --memory, as text for parseBytes()
+void addMemoryOption(CLI::App& command, std::string& memory);
+/// --maps a,b
+void addMapsOption(CLI::App& command, std::vector<std::string>& maps, const std::string& description);
+
+/// The texts behind CompressOptions, before they are parsed.
+struct CompressArguments {
+  std::string method = "paper";
+  std::string mask_radius = "3cm";
+  int masks = 0;
+  std::string unit;
+  std::string memory = "2GiB";
+  int gutter = -1;
+  CompressOptions options;
+};
+void addCompressOptions(CLI::App& command, CompressArguments& arguments);
+/// Throws InputError naming the option.
+CompressOptions parseCompressOptions(const CompressArguments& arguments);
+
+}  // namespace facezip::cli

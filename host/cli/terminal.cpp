@@ -1,0 +1,70 @@
+#include "terminal.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+
+namespace facezip::cli {
+namespace {
+
+constexpr auto kRedrawInterval = std::chrono::milliseconds(100);
+std::atomic<Progress*> g_cancelled_by_signal = nullptr;
+
+void onSignal(int signal) {
+  if (Progress* progress = g_cancelled_by_signal.load()) progress->cancel();
+  std::signal(signal, SIG_DFL);
+}
+
+}  // namespace
+
+TerminalProgress::TerminalProgress(bool quiet) : quiet_(quiet), terminal_(!quiet && ::isatty(STDERR_FILENO) == 1) {}
+
+TerminalProgress::~TerminalProgress() { clearLine(); }
+
+void TerminalProgress::clearLine() {
+  if (!line_shown_) return;
+  std::fputs("\r\x1b[K", stderr);
+  line_shown_ = false;
+}
+
+void TerminalProgress::stage(std::string_view name, std::size_t total) {
+  stage_ = name;
+  total_ = total;
+  last_shown_ = {};
+  advance(0);
+}
+
+void TerminalProgress::advance(std::size_t done) {
+  const auto now = std::chrono::steady_clock::now();
+  if (!terminal_ || now - last_shown_ < kRedrawInterval) return;
+  last_shown_ = now;
+  clearLine();
+  const std::string share =
+      total_ > 0 ? fmt::format(" {:3.0f} %", 100.0 * static_cast<double>(done) / static_cast<double>(total_)) : "";
+  fmt::print(stderr, "{}{} ...", stage_, share);
+  std::fflush(stderr);
+  line_shown_ = true;
+}
+
+void TerminalProgress::note(std::string_view message) {
+  if (quiet_) return;
+  clearLine();
+  fmt::print(stderr, "facezip: {}\n", message);
+}
+
+CancelOnSignal::CancelOnSignal(Progress& progress) {
+  g_cancelled_by_signal.store(&progress);
+  std::signal(SIGINT, onSignal);
+  std::signal(SIGTERM, onSignal);
+}
+
+CancelOnSignal::~CancelOnSignal() {
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+  g_cancelled_by_signal.store(nullptr);
+}
+
+}  // namespace facezip::cli

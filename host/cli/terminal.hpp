@@ -1,0 +1,43 @@
+// terminal.hpp - what the command says while it works: progress on a terminal, notes on standard error.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <string_view>
+
+#include "facezip/progress.hpp"
+
+namespace facezip::cli {
+
+/// Shows the stage and its share done on one line of standard error when that is a terminal; in a pipe only notes
+/// appear.
+class TerminalProgress : public Progress {
+ public:
+  /// quiet  no progress and no notes
+  explicit TerminalProgress(bool quiet);
+  ~TerminalProgress() override;
+  void stage(std::string_view name, std::size_t total) override;
+  void advance(std::size_t done) override;
+  void note(std::string_view message) override;
+
+ private:
+  void clearLine();
+  bool quiet_;
+  bool terminal_;
+  bool line_shown_ = false;
+  std::string stage_;
+  std::size_t total_ = 0;
+  std::chrono::steady_clock::time_point last_shown_;
+};
+
+/// Makes Ctrl-C and SIGTERM cancel `progress`, so that the work stops at its next step and removes what is unfinished.
+/// A second Ctrl-C ends the process at once. One at a time.
+class CancelOnSignal {
+ public:
+  explicit CancelOnSignal(Progress& progress);
+  ~CancelOnSignal();
+  CancelOnSignal(const CancelOnSignal&) = delete;
+  CancelOnSignal& operator=(const CancelOnSignal&) = delete;
+};
+
+}  // namespace facezip::cli

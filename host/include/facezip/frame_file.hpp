@@ -1,0 +1,35 @@
+// frame_file.hpp - blended frames as image files.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "facezip/package.hpp"
+
+namespace facezip {
+
+/// Writes one blended frame of `map`; the extension decides the format, which must be able to hold the map's sample
+/// type. The file appears whole or not at all; directories above it are made. frame  map.frameBytes() bytes, as
+/// Blender::blend() gives them Throws InputError for an extension that no format has, OutputError.
+void writeFrame(const std::filesystem::path& file, const PackageMap& map, std::span<const std::byte> frame);
+
+/// Names of frame files from a pattern: "%d" or "%04d" stands for the number of the frame, "{map}" for the map's name.
+class FramePattern {
+ public:
+  /// numbered  several frames are to be written, so the pattern must tell them apart
+  /// maps      number of maps; without "{map}" the names of several are put before the extension: frame.albedo.png
+  /// Throws InputError naming what is missing or malformed.
+  FramePattern(std::string pattern, bool numbered, std::size_t maps);
+  std::filesystem::path file(int frame, const std::string& map) const;
+
+ private:
+  std::string pattern_;
+  std::size_t number_begin_ = std::string::npos;
+  std::size_t number_length_ = 0;
+  int number_width_ = 0;
+  bool append_map_ = false;
+};
+
+}  // namespace facezip

@@ -75,9 +75,7 @@ TEST(StagedDirectory, MergeKeepsOtherFiles) {
   EXPECT_EQ(entries(folder.path()), 1u);
 }
 
-TEST(WriteTextFile, FullDiskIsAnOutputError) {
-  EXPECT_THROW(io::writeTextFile("/dev/full", "text"), OutputError);
-}
+TEST(WriteTextFile, FullDiskIsAnOutputError) { EXPECT_THROW(io::writeTextFile("/dev/full", "text"), OutputError); }
 
 }  // namespace
 }  // namespace facezip

@@ -21,8 +21,8 @@ struct DeviceInfo {
   std::string platform;  ///< for example "Portable Computing Language"
   std::string name;
   std::string vendor;
-  std::string driver;    ///< driver version
-  std::string version;   ///< OpenCL version string of the device
+  std::string driver;   ///< driver version
+  std::string version;  ///< OpenCL version string of the device
   enum class Type { kCpu, kGpu, kOther } type = Type::kOther;
   unsigned compute_units = 0;
   std::uint64_t global_memory_bytes = 0;

@@ -79,7 +79,8 @@ bool matches(const DeviceInfo& info, const std::string& selector) {
 
 std::optional<FoundDevice> choose(const std::vector<FoundDevice>& found, const std::string& selector) {
   const auto first = [&found](const std::string& wanted) -> std::optional<FoundDevice> {
-    const auto it = std::find_if(found.begin(), found.end(), [&](const FoundDevice& f) { return matches(f.info, wanted); });
+    const auto it =
+        std::find_if(found.begin(), found.end(), [&](const FoundDevice& f) { return matches(f.info, wanted); });
     if (it == found.end()) return std::nullopt;
     return *it;
   };
@@ -93,7 +94,8 @@ std::optional<FoundDevice> choose(const std::vector<FoundDevice>& found, const s
 }  // namespace
 
 DeviceError::DeviceError(const std::string& call, int code, const std::string& detail)
-    : Error(code == 0 ? fmt::format("{}: {}", call, detail) : fmt::format("{}: OpenCL error {}: {}", call, code, detail)),
+    : Error(code == 0 ? fmt::format("{}: {}", call, detail)
+                      : fmt::format("{}: OpenCL error {}: {}", call, code, detail)),
       code_(code) {}
 
 std::vector<DeviceInfo> listDevices() {
@@ -114,7 +116,8 @@ Device openDevice(std::string_view selector) {
   std::optional<FoundDevice> chosen = choose(found, lowerCase(selector));
   if (!chosen) {
     std::string available;
-    for (const FoundDevice& f : found) available += fmt::format("\n  {}  {} ({})", f.info.selector, f.info.name, f.info.platform);
+    for (const FoundDevice& f : found)
+      available += fmt::format("\n  {}  {} ({})", f.info.selector, f.info.name, f.info.platform);
     throw DeviceError(fmt::format("--device {}", selector), 0, fmt::format("no such device; there are:{}", available));
   }
   return Device(std::make_shared<device::DeviceContext>(std::move(chosen->device), std::move(chosen->info)));

@@ -113,7 +113,8 @@ void writeTextFile(const fs::path& path, const std::string& text) {
 
 void writeTextFileAtomically(const fs::path& path, const std::string& text) {
   const fs::path absolute = fs::absolute(path);
-  const fs::path partial = absolute.parent_path() / fmt::format(".{}.partial-{}", absolute.filename().string(), ::getpid());
+  const fs::path partial =
+      absolute.parent_path() / fmt::format(".{}.partial-{}", absolute.filename().string(), ::getpid());
   std::error_code error;
   try {
     writeTextFile(partial, text);

@@ -40,24 +40,46 @@ std::vector<int> samplePlaces(const RegionMesh& region, std::span<const int> sam
 // Entries of one row that stay, and what went.
 struct CutRow {
   std::vector<std::pair<int, double>> kept;  // mask, weight clamped to [0,1]
-  double removed = 0;
-  double negative = 0;
+  double kept_sum = 0;
+  double clamped_sum = 0;
+  double overshoot = 0;
   int active_before = 0;
 };
 
 CutRow cutRow(const Eigen::RowVectorXd& row, double cutoff) {
   CutRow cut;
   Eigen::Index strongest = 0;
-  const double largest = row.maxCoeff(&strongest);
+  row.maxCoeff(&strongest);
   for (Eigen::Index k = 0; k < row.size(); ++k) {
     const double clamped = std::clamp(row[k], 0.0, 1.0);
-    cut.active_before += clamped > 0 ? 1 : 0;
-    cut.negative = std::max(cut.negative, -row[k]);
-    const bool keep = (largest > 0 && k == strongest) || (clamped >= cutoff && clamped > 0);
-    if (keep) cut.kept.emplace_back(static_cast<int>(k), clamped);
-    cut.removed += std::max(row[k], 0.0) - (keep ? clamped : 0.0);
+    cut.overshoot = std::max(cut.overshoot, std::abs(row[k] - clamped));
+    cut.clamped_sum += clamped;
+    if (clamped == 0) continue;
+    ++cut.active_before;
+    if (clamped < cutoff && k != strongest) continue;
+    cut.kept.emplace_back(static_cast<int>(k), clamped);
+    cut.kept_sum += clamped;
   }
   return cut;
+}
+
+// Divides the kept weights by their sum and appends them as the next row.
+void appendRow(const CutRow& cut, MaskWeights& masks) {
+  for (const auto& [mask, weight] : cut.kept) {
+    masks.mask_index.push_back(mask);
+    masks.weight.push_back(static_cast<float>(weight / cut.kept_sum));
+  }
+  masks.row_begin.push_back(static_cast<int>(masks.mask_index.size()));
+}
+
+// Adds a row to the maxima, and with its share to the means.
+void addCost(const CutRow& cut, double share, MaskCutCost& cost) {
+  const double removed = 1 - cut.kept_sum / cut.clamped_sum;
+  cost.largest_removed = std::max(cost.largest_removed, removed);
+  cost.mean_removed += share * removed;
+  cost.largest_overshoot = std::max(cost.largest_overshoot, cut.overshoot);
+  cost.mean_active_before += share * cut.active_before;
+  cost.mean_active_after += share * static_cast<double>(cut.kept.size());
 }
 
 double largestRowSum(const Eigen::SparseMatrix<double>& symmetric) {
@@ -164,30 +186,16 @@ MaskWeights compactMaskWeights(const Eigen::MatrixXd& phi, double cutoff) {
   MaskWeights masks;
   masks.mask_count = static_cast<int>(phi.cols());
   masks.row_begin.push_back(0);
-  MaskCutCost& cost = masks.cost;
+  const double share = 1.0 / static_cast<double>(std::max<Eigen::Index>(phi.rows(), 1));
   for (Eigen::Index v = 0; v < phi.rows(); ++v) {
     const Eigen::RowVectorXd row = phi.row(v);
     const CutRow cut = row.size() > 0 && row.allFinite() ? cutRow(row, cutoff) : CutRow{};
     if (cut.kept.empty()) {
       throw InputError({"", fmt::format("mask weights of vertex {}", v), "a positive one, all finite", "none", ""});
     }
-    double sum = 0;
-    for (const auto& [mask, weight] : cut.kept) sum += weight;
-    for (const auto& [mask, weight] : cut.kept) {
-      masks.mask_index.push_back(mask);
-      masks.weight.push_back(static_cast<float>(weight / sum));
-    }
-    masks.row_begin.push_back(static_cast<int>(masks.mask_index.size()));
-    cost.largest_removed = std::max(cost.largest_removed, cut.removed);
-    cost.mean_removed += cut.removed;
-    cost.largest_negative = std::max(cost.largest_negative, cut.negative);
-    cost.mean_active_before += cut.active_before;
-    cost.mean_active_after += static_cast<double>(cut.kept.size());
+    appendRow(cut, masks);
+    addCost(cut, share, masks.cost);
   }
-  const double rows = std::max(1.0, static_cast<double>(phi.rows()));
-  cost.mean_removed /= rows;
-  cost.mean_active_before /= rows;
-  cost.mean_active_after /= rows;
   return masks;
 }
 

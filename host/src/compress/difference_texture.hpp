@@ -49,10 +49,9 @@ class DifferenceTextures {
   /// entry texture * shape.channels + channel.
   std::vector<TextureRange> range(const DeviceTiles& tiles, const BandShape& shape);
 
-  /// Encodes what compute() made last into `bytes`, [texture][shape.rows][shape.width][channel]: the byte nearest to the
-  /// value, halves upwards, clamped to 0..255. Texels without a mask get the byte of 0.
-  /// encoding  C x shape.channels, as in range()
-  /// bytes     exactly C * rows * width * channels
+  /// Encodes what compute() made last into `bytes`, [texture][shape.rows][shape.width][channel]: the byte nearest to
+  /// the value, halves upwards, clamped to 0..255. Texels without a mask get the byte of 0. encoding  C x
+  /// shape.channels, as in range() bytes     exactly C * rows * width * channels
   void encode(const DeviceTiles& tiles, const BandShape& shape, std::span<const TextureEncoding> encoding,
               std::span<std::uint8_t> bytes);
 };

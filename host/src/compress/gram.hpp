@@ -8,6 +8,7 @@
 
 #include "compress/device_tiles.hpp"
 #include "compress/gram_matrices.hpp"
+#include "compress/gram_plan.hpp"
 #include "compress/tile_band.hpp"
 #include "device/device_context.hpp"
 #include "device/pooled_buffer.hpp"
@@ -40,6 +41,25 @@ class GramAccumulator {
 
   /// Returns the sums so far and starts again from zero.
   GramMatrices finish();
+
+ private:
+  void uploadPlan(const GramPlan& plan);
+  cl::Event runBlocks(const DeviceTiles& tiles, const cl::Buffer& differences, const BandShape& shape,
+                      const GramPlan& plan, int first_block, int block_count);
+  void addSums(const GramPlan& plan, int first_block, int block_count, double metric_weight);
+
+  device::DeviceContext& context_;
+  device::KernelVariant variant_;
+  PairSlots pair_slots_;
+  GramMatrices sums_;
+  device::PooledBuffer run_begin_;
+  device::PooledBuffer run_rows_;
+  device::PooledBuffer slot_begin_;
+  device::PooledBuffer entries_;
+  device::PooledBuffer touched_begin_;
+  device::PooledBuffer touched_rows_;
+  device::PooledBuffer partial_;
+  device::PooledBuffer reduced_;
 };
 
 }  // namespace facezip::compress

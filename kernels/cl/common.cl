@@ -9,3 +9,10 @@
 #define TILE_SIDE 16
 #endif
 #define TILE_TEXELS (TILE_SIDE * TILE_SIDE)
+
+// One rounding where the device does it in one instruction; software fma() is tens of times slower than mad().
+#ifdef FP_FAST_FMAF
+#define FMA(a, b, c) fma(a, b, c)
+#else
+#define FMA(a, b, c) mad(a, b, c)
+#endif

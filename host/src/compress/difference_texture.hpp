@@ -1,0 +1,59 @@
+// difference_texture.hpp - the difference textures D_i of one band (FaceZip, Eq. 5), their range and their bytes.
+//   D_i(p) = sum_k M_k(p) * sum_n coefficients[k][i][n] * Delta_n(p)
+// M_k here includes the gutter around the covered texels, so that bilinear and mip sampling never meet an empty texel.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "compress/device_tiles.hpp"
+#include "compress/tile_band.hpp"
+#include "device/device_context.hpp"
+#include "device/pooled_buffer.hpp"
+
+namespace facezip::compress {
+
+/// How the differences of N expressions make the C textures of each of K masks.
+struct TextureCoefficients {
+  int masks = 0;              ///< K
+  int textures = 0;           ///< C, 1 to 8
+  int expressions = 0;        ///< N
+  std::vector<float> values;  ///< K x C x N; for Eq. 5: 1/|cluster| if n lies in cluster sigma(i, k) of mask k, else 0
+};
+
+/// Smallest and largest value, in units of 1/255; min > max where there was no texel.
+struct TextureRange {
+  float min = 0.0f;
+  float max = 0.0f;
+};
+
+/// value = scale * byte + offset, in units of 1/255; scale 0 or more.
+struct TextureEncoding {
+  float scale = 1.0f;
+  float offset = 0.0f;
+};
+
+class DifferenceTextures {
+ public:
+  /// Uploads the table. Throws DeviceError.
+  DifferenceTextures(device::DeviceContext& context, const TextureCoefficients& coefficients);
+
+  /// Computes the textures of a band: [tile][texture][channel][256] float, units of 1/255; 0 where no mask is active.
+  /// Returns the buffer, which the next call overwrites. Does not wait.
+  /// differences  what computeDifferences() wrote for the same tiles and shape
+  const cl::Buffer& compute(const DeviceTiles& tiles, const cl::Buffer& differences, const BandShape& shape);
+
+  /// Range of what compute() made last, over the texels where a mask is active (gutter too):
+  /// entry texture * shape.channels + channel.
+  std::vector<TextureRange> range(const DeviceTiles& tiles, const BandShape& shape);
+
+  /// Encodes what compute() made last into `bytes`, [texture][shape.rows][shape.width][channel]: the byte nearest to
+  /// the value, halves upwards, clamped to 0..255. Texels without a mask get the byte of 0. encoding  C x
+  /// shape.channels, as in range() bytes     exactly C * rows * width * channels
+  void encode(const DeviceTiles& tiles, const BandShape& shape, std::span<const TextureEncoding> encoding,
+              std::span<std::uint8_t> bytes);
+};
+
+}  // namespace facezip::compress

@@ -1,0 +1,220 @@
+#include "compress/gram.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <tuple>
+#include <vector>
+
+#include "compress/difference.hpp"
+#include "reference/difference.hpp"
+#include "reference/gram.hpp"
+#include "synthetic_band.hpp"
+#include "test_device.hpp"
+#include "tolerances.hpp"
+
+namespace facezip::compress {
+namespace {
+
+using device::KernelVariant;
+using image::SampleType;
+
+/// Every mask and every pair that shares a tile.
+GramSlots slotsOf(const std::vector<TileMasks>& bands, int mask_count) {
+  std::set<std::pair<int, int>> pairs;
+  for (const TileMasks& masks : bands) {
+    for (std::size_t t = 0; t < masks.tiles.size(); ++t) {
+      for (int a = masks.mask_begin[t]; a < masks.mask_begin[t + 1]; ++a) {
+        for (int b = a + 1; b < masks.mask_begin[t + 1]; ++b) {
+          pairs.insert({masks.mask_index[static_cast<std::size_t>(a)], masks.mask_index[static_cast<std::size_t>(b)]});
+        }
+      }
+    }
+  }
+  GramSlots slots{mask_count, {}};
+  for (const auto& [k, l] : pairs) slots.pairs.push_back({k, l});
+  return slots;
+}
+
+void addBand(GramAccumulator& gram, const test::SyntheticBand& band, const TileMasks& masks, double metric_weight) {
+  device::DeviceContext& context = test::testDevice();
+  DeviceTiles tiles(context);
+  tiles.upload(masks);
+  const cl::Buffer samples = context.upload(band.samples, "samples");
+  const cl::Buffer differences =
+      context.allocate(differenceBufferBytes(band.shape, masks.tiles.size()), CL_MEM_READ_WRITE, "differences");
+  computeDifferences(context, tiles, band.shape, samples, differences);
+  gram.add(tiles, differences, band.shape, metric_weight);
+}
+
+/// The tiles of a band for the reference.
+std::vector<reference::GramTile> referenceTiles(const test::SyntheticBand& band, const TileMasks& masks) {
+  const BandShape& shape = band.shape;
+  const std::vector<double> differences =
+      reference::differences(band.values, test::tilePositions(masks), shape.width, shape.rows, shape.channels,
+                             shape.expressions, static_cast<double>(image::unit255(shape.sample_type)));
+  const std::size_t per_tile = differences.size() / masks.tiles.size();
+  std::vector<reference::GramTile> tiles(masks.tiles.size());
+  for (std::size_t t = 0; t < tiles.size(); ++t) {
+    const auto first = differences.begin() + static_cast<std::ptrdiff_t>(t * per_tile);
+    tiles[t].differences.assign(first, first + static_cast<std::ptrdiff_t>(per_tile));
+    const auto texels = masks.texel_weights.begin() + static_cast<std::ptrdiff_t>(t * kTileTexels);
+    tiles[t].texel_weights.assign(texels, texels + kTileTexels);
+    for (int e = masks.mask_begin[t]; e < masks.mask_begin[t + 1]; ++e) {
+      const auto weights = masks.mask_weights.begin() + static_cast<std::ptrdiff_t>(e) * kTileTexels;
+      tiles[t].masks.push_back({masks.mask_index[static_cast<std::size_t>(e)], {weights, weights + kTileTexels}});
+    }
+  }
+  return tiles;
+}
+
+/// Compares one slot; `expected` is what the bands add up to.
+void expectSlot(const GramMatrices& actual, int slot, const std::vector<double>& expected) {
+  const auto matrix = actual.slot(slot);
+  const auto n_count = static_cast<std::size_t>(actual.expressions);
+  for (std::size_t n = 0; n < n_count; ++n) {
+    for (std::size_t m = 0; m < n_count; ++m) {
+      const double scale = std::sqrt(expected[n * n_count + n] * expected[m * n_count + m]);
+      const double value = matrix(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(m));
+      ASSERT_NEAR(value, expected[n * n_count + m], test::kGramRelative * scale)
+          << "slot " << slot << ", expressions " << n << " and " << m;
+      ASSERT_EQ(value, matrix(static_cast<Eigen::Index>(m), static_cast<Eigen::Index>(n))) << "not symmetric";
+    }
+  }
+}
+
+struct Case {
+  BandShape shape;
+  int masks;
+  int most_masks;
+};
+
+class Gram : public testing::TestWithParam<std::tuple<Case, KernelVariant>> {};
+
+TEST_P(Gram, EqualsReference) {
+  const auto& [which, variant] = GetParam();
+  const BandShape& shape = which.shape;
+  if (test::smallSizesOnly() && shape.expressions * which.most_masks > 20) GTEST_SKIP() << "small sizes only";
+  const test::SyntheticBand band = test::makeBand(shape, 3);
+  const TileMasks masks = test::makeTileMasks(shape, which.masks, which.most_masks, 4);
+  const GramSlots slots = slotsOf({masks}, which.masks);
+  GramAccumulator accumulator(test::testDevice(), slots, shape.expressions, variant);
+  addBand(accumulator, band, masks, 0.75);
+  const GramMatrices actual = accumulator.finish();
+
+  const std::vector<reference::GramTile> tiles = referenceTiles(band, masks);
+  const auto check = [&](int slot, int k, int l) {
+    std::vector<double> expected = reference::gram(tiles, shape.expressions, shape.channels, k, l);
+    for (double& value : expected) value *= 0.75;
+    expectSlot(actual, slot, expected);
+  };
+  check(slots.whole(), -1, -1);
+  for (int k = 0; k < slots.masks; ++k) check(slots.mask(k), k, -1);
+  for (std::size_t j = 0; j < slots.pairs.size(); ++j) {
+    check(slots.pair(static_cast<int>(j)), slots.pairs[j].k, slots.pairs[j].l);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, Gram,
+                         testing::Combine(testing::Values(Case{{93, 16, 3, 3, SampleType::kUint8}, 5, 3},
+                                                          Case{{93, 10, 1, 1, SampleType::kUint8}, 4, 4},
+                                                          Case{{40, 16, 4, 5, SampleType::kUint16}, 3, 2},
+                                                          Case{{93, 32, 3, 20, SampleType::kUint8}, 14, 12},
+                                                          Case{{93, 32, 4, 37, SampleType::kFloat32}, 13, 12},
+                                                          Case{{93, 10, 3, 20, SampleType::kUint16}, 9, 8},
+                                                          Case{{1024, 80, 1, 3, SampleType::kUint8}, 20, 4}),
+                                          testing::Values(KernelVariant::kCpu, KernelVariant::kGpu)));
+
+class GramVariant : public testing::TestWithParam<KernelVariant> {};
+
+TEST_P(GramVariant, BandsAndMapsAddUp) {
+  const int mask_count = 4;
+  const BandShape colours{93, 16, 3, 3, SampleType::kUint8};
+  const BandShape heights{93, 10, 1, 3, SampleType::kFloat32};
+  const TileMasks first = test::makeTileMasks(colours, mask_count, 3, 5);
+  const TileMasks second = test::makeTileMasks(heights, mask_count, 3, 6);
+  const test::SyntheticBand colour_band = test::makeBand(colours, 7);
+  const test::SyntheticBand height_band = test::makeBand(heights, 8);
+  const GramSlots slots = slotsOf({first, second}, mask_count);
+  GramAccumulator accumulator(test::testDevice(), slots, 3, GetParam());
+  addBand(accumulator, colour_band, first, 1.0);
+  addBand(accumulator, height_band, second, 0.125);
+  const GramMatrices actual = accumulator.finish();
+  std::vector<double> expected = reference::gram(referenceTiles(colour_band, first), 3, 3, 2, -1);
+  const std::vector<double> more = reference::gram(referenceTiles(height_band, second), 3, 1, 2, -1);
+  for (std::size_t i = 0; i < expected.size(); ++i) expected[i] += 0.125 * more[i];
+  expectSlot(actual, slots.mask(2), expected);
+
+  // finish() starts again from zero.
+  addBand(accumulator, colour_band, first, 1.0);
+  expectSlot(accumulator.finish(), slots.whole(), reference::gram(referenceTiles(colour_band, first), 3, 3, -1, -1));
+}
+
+TEST_P(GramVariant, EqualExpressionsHaveEqualRowsAndTheSameBitsEveryTime) {
+  const BandShape shape{93, 16, 3, 6, SampleType::kUint8};
+  test::SyntheticBand band = test::makeBand(shape, 9);
+  // Expression 4 (another block than 1) becomes expression 1.
+  const std::size_t image = band.samples.size() / 7;
+  std::copy_n(band.samples.begin() + static_cast<std::ptrdiff_t>(2 * image), image,
+              band.samples.begin() + static_cast<std::ptrdiff_t>(5 * image));
+  const TileMasks masks = test::makeTileMasks(shape, 5, 4, 10);
+  GramAccumulator accumulator(test::testDevice(), slotsOf({masks}, 5), 6, GetParam());
+  addBand(accumulator, band, masks, 1.0);
+  const GramMatrices once = accumulator.finish();
+  for (int slot = 0; slot < once.slots.count(); ++slot) {
+    const auto matrix = once.slot(slot);
+    EXPECT_EQ(matrix(1, 1) + matrix(4, 4) - 2.0 * matrix(1, 4), 0.0) << "slot " << slot;
+    for (int m = 0; m < 6; ++m) EXPECT_EQ(matrix(1, m), matrix(4, m)) << "slot " << slot << ", expression " << m;
+  }
+  addBand(accumulator, band, masks, 1.0);
+  EXPECT_EQ(accumulator.finish().values, once.values);
+}
+
+TEST_P(GramVariant, PairsThatAreNotListedAreLeftOut) {
+  const BandShape shape{64, 16, 1, 2, SampleType::kUint8};
+  const test::SyntheticBand band = test::makeBand(shape, 11);
+  const TileMasks masks = test::makeTileMasks(shape, 3, 3, 12);
+  GramAccumulator accumulator(test::testDevice(), GramSlots{3, {{0, 2}}}, 2, GetParam());
+  addBand(accumulator, band, masks, 1.0);
+  const GramMatrices actual = accumulator.finish();
+  const std::vector<reference::GramTile> tiles = referenceTiles(band, masks);
+  expectSlot(actual, actual.slots.mask(1), reference::gram(tiles, 2, 1, 1, -1));
+  expectSlot(actual, actual.slots.pair(0), reference::gram(tiles, 2, 1, 0, 2));
+}
+
+/// Some tens of runs, two launches over blocks: N = 128 has 528 blocks of 64 bytes, so 64 MiB hold 1985 rows.
+TEST_P(GramVariant, ManyRunsAndLaunches) {
+  if (test::smallSizesOnly()) GTEST_SKIP() << "small sizes only";
+  const BandShape shape{4096, 16, 1, 128, SampleType::kUint8};
+  const int mask_count = 150;
+  const TileMasks masks = test::makeTileMasks(shape, mask_count, 10, 13);
+  const GramSlots slots = slotsOf({masks}, mask_count);
+  ASSERT_GT((masks.mask_index.size() * 4) * 528 * 64, GramAccumulator::kLargestPartialBytes) << "one launch only";
+  const test::SyntheticBand band = test::makeBand(shape, 14);
+  GramAccumulator accumulator(test::testDevice(), slots, shape.expressions, GetParam());
+  addBand(accumulator, band, masks, 1.0);
+  const GramMatrices actual = accumulator.finish();
+  const std::vector<reference::GramTile> tiles = referenceTiles(band, masks);
+  expectSlot(actual, slots.whole(), reference::gram(tiles, 128, 1, -1, -1));
+  expectSlot(actual, slots.mask(77), reference::gram(tiles, 128, 1, 77, -1));
+  const int last = static_cast<int>(slots.pairs.size()) - 1;
+  expectSlot(actual, slots.pair(last), reference::gram(tiles, 128, 1, slots.pairs.back().k, slots.pairs.back().l));
+}
+
+TEST_P(GramVariant, RefusesABufferThatIsTooSmall) {
+  device::DeviceContext& context = test::testDevice();
+  const BandShape shape{93, 16, 3, 2, SampleType::kUint8};
+  const TileMasks masks = test::makeTileMasks(shape, 3, 1, 2);
+  DeviceTiles tiles(context);
+  tiles.upload(masks);
+  const cl::Buffer small =
+      context.allocate(differenceBufferBytes(shape, masks.tiles.size()) - 1, CL_MEM_READ_WRITE, "differences");
+  GramAccumulator accumulator(context, slotsOf({masks}, 3), 2, GetParam());
+  EXPECT_THROW(accumulator.add(tiles, small, shape, 1.0), DeviceError);
+}
+
+INSTANTIATE_TEST_SUITE_P(Variants, GramVariant, testing::Values(KernelVariant::kCpu, KernelVariant::kGpu));
+
+}  // namespace
+}  // namespace facezip::compress

@@ -27,10 +27,10 @@ struct PackageMap {
   int height = 0;    ///< texels; row 0 is v = 1
   int channels = 0;  ///< 1 to 4, interleaved
   SampleType sample_type = SampleType::kUint8;
-  std::string colour_space;    ///< "sRGB", "linear" or "" (not said)
-  int weight_scale = 8;        ///< s: texels to a cell of the weight maps, along each axis
-  double metric_weight = 1.0;  ///< how much the map counted in the compression
-  std::string neutral_file;    ///< relative to the package
+  std::string colour_space;                    ///< "sRGB", "linear" or "" (not said)
+  int weight_scale = 8;                        ///< s: texels to a cell of the weight maps, along each axis
+  double metric_weight = 1.0;                  ///< how much the map counted in the compression
+  std::string neutral_file;                    ///< relative to the package
   std::vector<PackageDifference> differences;  ///< C, in the order of the weight channels
 
   /// Bytes of a whole neutral texture, or of a blended frame: height x width x channels samples, no padding.
@@ -42,7 +42,7 @@ struct PackageWeights {
   std::vector<std::string> files;  ///< relative to the package; file f holds channels 4 f to 4 f + 3
   int columns = 0;                 ///< tiles in a row of the atlas; expression n is tile n in row-major order
   int rows = 0;
-  int tile_width = 0;   ///< cells of one weight map, without the border
+  int tile_width = 0;  ///< cells of one weight map, without the border
   int tile_height = 0;
   int border = 1;              ///< cells around a tile that repeat its edge
   std::vector<double> scale;   ///< C; W = scale * code + offset
@@ -51,8 +51,8 @@ struct PackageWeights {
 
 /// All that package.json says.
 struct PackageDescription {
-  std::string generator;  ///< "facezip X.Y.Z", what wrote it
-  std::string name;       ///< the capture's
+  std::string generator;                 ///< "facezip X.Y.Z", what wrote it
+  std::string name;                      ///< the capture's
   std::vector<std::string> expressions;  ///< N names in the order of the weight vector beta
   int differences = 4;                   ///< C, 1 to 8
   PackageWeights weights;
@@ -64,8 +64,8 @@ struct PackageDescription {
 /// A package on disk that was found to be whole. Holds the description only; texels are read when they are needed.
 class Package {
  public:
-  /// Opens the package in `directory` (its package.json is accepted as well) and checks every field of package.json, and
-  /// of every image that it exists, has the size, channels and type that package.json says and is not cut short.
+  /// Opens the package in `directory` (its package.json is accepted as well) and checks every field of package.json,
+  /// and of every image that it exists, has the size, channels and type that package.json says and is not cut short.
   /// Damage inside an image that keeps its length is found when its texels are read.
   /// Throws InputError that names the file, the field as a JSON path ("maps[0].width"), and what was expected.
   static Package open(const std::filesystem::path& directory);
@@ -84,8 +84,8 @@ class Package {
   /// EXPERIMENTAL: how the package was made, a JSON object.
   const std::string& methodJson() const noexcept { return description_.method_json; }
 
-  /// Bytes of the decoded texels that a renderer keeps (FaceZip, Table 1): per map 1 + C textures (the neutral in its own
-  /// type, differences in 8 bit), and N weight maps of C bytes a cell without their borders.
+  /// Bytes of the decoded texels that a renderer keeps (FaceZip, Table 1): per map 1 + C textures (the neutral in its
+  /// own type, differences in 8 bit), and N weight maps of C bytes a cell without their borders.
   std::uint64_t bytesInMemory() const;
   /// Bytes of all files of the package.
   std::uint64_t bytesOnDisk() const noexcept { return bytes_on_disk_; }

@@ -14,11 +14,11 @@ namespace facezip::package {
 /// io::StagedDirectory's, so that a reader sees the whole package or none; committing it is the caller's.
 class PackageWriter {
  public:
-  /// Creates every image. From the caller come: name, expressions, differences (C), weights.scale/offset, method_json and
-  /// of each map name, width, height, channels, sample_type, colour_space, weight_scale, metric_weight and C differences
-  /// with scale/offset. File names, the atlas layout and the generator are filled in here.
-  /// Throws InputError for a description that Package::open would refuse, and when the weight atlas would pass 16384
-  /// cells along a side; OutputError.
+  /// Creates every image. From the caller come: name, expressions, differences (C), weights.scale/offset, method_json
+  /// and of each map name, width, height, channels, sample_type, colour_space, weight_scale, metric_weight and C
+  /// differences with scale/offset. File names, the atlas layout and the generator are filled in here. Throws
+  /// InputError for a description that Package::open would refuse, and when the weight atlas would pass 16384 cells
+  /// along a side; OutputError.
   PackageWriter(PackageDescription description, std::filesystem::path directory);
   ~PackageWriter();
 

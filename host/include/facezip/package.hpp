@@ -1,0 +1,100 @@
+// package.hpp - a compressed capture on disk: what docs/package_format.md says, as C++ values.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "facezip/error.hpp"
+
+namespace facezip {
+
+/// Type of the samples of a map's neutral texture, and so of every frame that is blended from it.
+enum class SampleType { kUint8, kUint16, kFloat32 };
+
+/// One difference texture D_i of one map: an 8-bit image whose codes decode to D_i = scale * code + offset.
+struct PackageDifference {
+  std::string file;            ///< relative to the package
+  std::vector<double> scale;   ///< one per channel, >= 0, in units of 1/255 of full scale for each code
+  std::vector<double> offset;  ///< one per channel, -scale times a whole code in [0, 255]: zero is exact
+};
+
+/// One map (albedo, normal, ...): its neutral texture I_0 and its difference textures.
+struct PackageMap {
+  std::string name;  ///< names the map's folder too
+  int width = 0;     ///< texels
+  int height = 0;    ///< texels; row 0 is v = 1
+  int channels = 0;  ///< 1 to 4, interleaved
+  SampleType sample_type = SampleType::kUint8;
+  std::string colour_space;                    ///< "sRGB", "linear" or "" (not said)
+  int weight_scale = 8;                        ///< s: texels to a cell of the weight maps, along each axis
+  double metric_weight = 1.0;                  ///< how much the map counted in the compression
+  std::string neutral_file;                    ///< relative to the package
+  std::vector<PackageDifference> differences;  ///< C, in the order of the weight channels
+
+  /// Bytes of a whole neutral texture, or of a blended frame: height x width x channels samples, no padding.
+  std::size_t frameBytes() const;
+};
+
+/// The weight maps W_n of all expressions: C channels a cell, one tile an expression, in one image (two above C = 4).
+struct PackageWeights {
+  std::vector<std::string> files;  ///< relative to the package; file f holds channels 4 f to 4 f + 3
+  int columns = 0;                 ///< tiles in a row of the atlas; expression n is tile n in row-major order
+  int rows = 0;
+  int tile_width = 0;  ///< cells of one weight map, without the border
+  int tile_height = 0;
+  int border = 1;              ///< cells around a tile that repeat its edge
+  std::vector<double> scale;   ///< C; W = scale * code + offset
+  std::vector<double> offset;  ///< C
+};
+
+/// All that package.json says.
+struct PackageDescription {
+  std::string generator;                 ///< "facezip X.Y.Z", what wrote it
+  std::string name;                      ///< the capture's
+  std::vector<std::string> expressions;  ///< N names in the order of the weight vector beta
+  int differences = 4;                   ///< C, 1 to 8
+  PackageWeights weights;
+  std::vector<PackageMap> maps;
+  /// EXPERIMENTAL: a JSON object that records how the package was made; its fields may change in any version.
+  std::string method_json = "{}";
+};
+
+/// A package on disk that was found to be whole. Holds the description only; texels are read when they are needed.
+class Package {
+ public:
+  /// Opens the package in `directory` (its package.json is accepted as well) and checks every field of package.json,
+  /// and of every image that it exists, has the size, channels and type that package.json says and is not cut short.
+  /// Damage inside an image that keeps its length is found when its texels are read.
+  /// Throws InputError that names the file, the field as a JSON path ("maps[0].width"), and what was expected.
+  static Package open(const std::filesystem::path& directory);
+
+  const std::filesystem::path& directory() const noexcept { return directory_; }
+  const PackageDescription& description() const noexcept { return description_; }
+  const std::string& name() const noexcept { return description_.name; }
+  /// N names in the order of the weight vector.
+  const std::vector<std::string>& expressions() const noexcept { return description_.expressions; }
+  const std::vector<PackageMap>& maps() const noexcept { return description_.maps; }
+  /// Index of the map of that name. Throws InputError that lists the names there are.
+  int mapIndex(const std::string& map_name) const;
+  /// C, the number of difference textures of each map.
+  int differences() const noexcept { return description_.differences; }
+  const PackageWeights& weights() const noexcept { return description_.weights; }
+  /// EXPERIMENTAL: how the package was made, a JSON object.
+  const std::string& methodJson() const noexcept { return description_.method_json; }
+
+  /// Bytes of the decoded texels that a renderer keeps (FaceZip, Table 1): per map 1 + C textures (the neutral in its
+  /// own type, differences in 8 bit), and N weight maps of C bytes a cell without their borders.
+  std::uint64_t bytesInMemory() const;
+  /// Bytes of all files of the package.
+  std::uint64_t bytesOnDisk() const noexcept { return bytes_on_disk_; }
+
+ private:
+  Package() = default;
+  std::filesystem::path directory_;
+  PackageDescription description_;
+  std::uint64_t bytes_on_disk_ = 0;
+};
+
+}  // namespace facezip

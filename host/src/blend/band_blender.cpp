@@ -1,0 +1,72 @@
+#include "blend/band_blender.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <optional>
+
+#include "blend/blend.hpp"
+#include "blend/map_textures.hpp"
+
+namespace facezip::blend {
+
+static_assert(BandBlender::rowStep() == kTileRows);
+
+struct BandBlender::State {
+  device::DeviceContext& context;
+  std::shared_ptr<WeightMaps> weights;
+  std::vector<std::string> expressions;
+  int height;
+  TextureShape shape;
+  MapReader reader;
+  std::optional<TextureRows> textures;  // grows to the largest band that was asked for
+  int most_rows = 0;
+};
+
+BandBlender::BandBlender(const Package& package, int map_index, std::shared_ptr<WeightMaps> weights,
+                         const Device& device)
+    : state_(std::make_unique<State>(
+          State{device.context(), std::move(weights), package.expressions(),
+                package.maps()[static_cast<std::size_t>(map_index)].height,
+                textureShape(package.maps()[static_cast<std::size_t>(map_index)], package.differences()),
+                MapReader(package, map_index), std::nullopt, 0})) {}
+
+BandBlender::~BandBlender() = default;
+
+int BandBlender::rowsWithin(std::size_t bytes) const {
+  // Tiles on the device and a frame of padded rows; what is read at once is small beside them.
+  const std::size_t padded = static_cast<std::size_t>(state_->shape.tilesAcross()) * kTileWidth;
+  const std::size_t tile_row_bytes = state_->shape.tilesBytes() + kTileRows * 2 * padded * state_->shape.rowBytes() /
+                                                                      static_cast<std::size_t>(state_->shape.width);
+  const std::size_t largest = state_->context.info().largest_allocation_bytes / state_->shape.tilesBytes();
+  const std::size_t tile_rows = std::clamp<std::size_t>(bytes / tile_row_bytes, 1, std::max<std::size_t>(1, largest));
+  const std::size_t needed = static_cast<std::size_t>((state_->height + kTileRows - 1) / kTileRows);
+  return static_cast<int>(std::min(tile_rows, needed)) * kTileRows;
+}
+
+void BandBlender::loadRows(int begin, int end) {
+  assert(begin % kTileRows == 0 && (end % kTileRows == 0 || end == state_->height) && end <= state_->height);
+  if (!state_->textures || end - begin > state_->most_rows) {
+    state_->textures.reset();  // before the larger one is made
+    const WeightGrid& grid = state_->weights->grid();
+    state_->textures.emplace(state_->context, state_->shape, end - begin, grid.columns, grid.rows);
+    state_->most_rows = end - begin;
+  }
+  state_->textures->setRows(begin, end);
+  state_->reader.load(*state_->textures);
+}
+
+void BandBlender::blend(std::span<const float> beta, std::span<std::byte> out) {
+  assert(state_->textures);
+  requireWeights(beta, state_->expressions);
+  const TextureRows& textures = *state_->textures;
+  const auto [first, last] =
+      cellRowsOf(textures.begin(), textures.end(), state_->shape.weight_scale, state_->weights->grid().rows);
+  state_->weights->blend(beta, first, last);
+  state_->textures->blend(state_->weights->weights(), out);
+}
+
+std::shared_ptr<WeightMaps> loadWeightMaps(const Package& package, const Device& device) {
+  return loadWeightMaps(package, device.context());
+}
+
+}  // namespace facezip::blend

@@ -1,0 +1,46 @@
+// band_blender.hpp - blends one map of a package, band of rows by band of rows, so that images larger than memory pass.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "facezip/device.hpp"
+#include "facezip/package.hpp"
+
+namespace facezip::blend {
+
+class WeightMaps;
+
+/// Reads a band of the neutral and the difference textures from disk, then blends it with any number of weight vectors.
+/// The same code as Blender: the same bits for every row.
+class BandBlender {
+ public:
+  /// Opens the images of map `map_index`. `weights` may be shared by the maps of a package (loadWeightMaps).
+  /// Throws InputError, DeviceError.
+  BandBlender(const Package& package, int map_index, std::shared_ptr<WeightMaps> weights, const Device& device);
+  ~BandBlender();
+
+  /// Rows, a multiple of rowStep(), whose textures and frame take at most `bytes` on host and device together.
+  int rowsWithin(std::size_t bytes) const;
+  /// Bands begin at a multiple of this.
+  static constexpr int rowStep() { return 8; }
+
+  /// Loads rows [begin, end): begin a multiple of rowStep(), end too or the map's height. Bands in rising order read
+  /// the files once. Throws InputError for damaged images, DeviceError.
+  void loadRows(int begin, int end);
+
+  /// Blends the loaded rows.
+  /// beta  N finite weights, in the package's order
+  /// out   (end - begin) x width x channels samples of the neutral's type, interleaved
+  void blend(std::span<const float> beta, std::span<std::byte> out);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Reads the weight atlas of `package` onto `device`. Throws InputError, DeviceError.
+std::shared_ptr<WeightMaps> loadWeightMaps(const Package& package, const Device& device);
+
+}  // namespace facezip::blend

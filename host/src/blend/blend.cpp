@@ -1,0 +1,175 @@
+#include "blend/blend.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cstdint>
+#include <cstring>
+
+namespace facezip::blend {
+namespace {
+
+std::size_t size(int value) { return static_cast<std::size_t>(value); }
+
+/// Splits one interleaved row of texels into planes of 16: to[tile * tile_stride + (channel * 16 + x)].
+/// Texels beyond the width keep what was there; the frame's padding is never read.
+template <typename Sample>
+void splitRow(const std::byte* row, int width, int channels, std::size_t tile_stride, std::byte* to) {
+  for (int x0 = 0; x0 < width; x0 += kTileWidth) {
+    const int count = std::min(kTileWidth, width - x0);
+    for (int c = 0; c < channels; ++c) {
+      const std::byte* from = row + (size(x0) * size(channels) + size(c)) * sizeof(Sample);
+      std::byte* plane = to + size(c) * kTileWidth * sizeof(Sample);
+      for (int x = 0; x < count; ++x) {
+        std::memcpy(plane + size(x) * sizeof(Sample), from + size(x) * size(channels) * sizeof(Sample), sizeof(Sample));
+      }
+    }
+    to += tile_stride;
+  }
+}
+
+void splitNeutralRow(const TextureShape& shape, const std::byte* row, std::size_t tile_stride, std::byte* to) {
+  switch (image::sampleBytes(shape.sample_type)) {
+    case 1:
+      return splitRow<std::uint8_t>(row, shape.width, shape.channels, tile_stride, to);
+    case 2:
+      return splitRow<std::uint16_t>(row, shape.width, shape.channels, tile_stride, to);
+    default:
+      return splitRow<float>(row, shape.width, shape.channels, tile_stride, to);
+  }
+}
+
+std::vector<float> encodingOf(const TextureShape& shape) {
+  std::vector<float> encoding = shape.scale;
+  encoding.insert(encoding.end(), shape.zero.begin(), shape.zero.end());
+  return encoding;
+}
+
+std::string definesOf(const TextureShape& shape, bool gpu) {
+  return fmt::format("-D LANES={} -D CHANNELS={} -D DIFFERENCES={} -D SCALE={} -D SAMPLE_TYPE={} -D TILE_ROW_BYTES={}",
+                     gpu ? 1 : kTileWidth, shape.channels, shape.differences, shape.weight_scale,
+                     static_cast<int>(shape.sample_type), shape.tileRowBytes());
+}
+
+int floorDivide(int numerator, int denominator) {
+  return numerator >= 0 ? numerator / denominator : -((denominator - 1 - numerator) / denominator);
+}
+
+}  // namespace
+
+std::size_t TextureShape::tileRowBytes() const {
+  const std::size_t sample = image::sampleBytes(sample_type);
+  const std::size_t planes = size(channels) * (sample + size(differences));
+  return device::roundUp(planes * kTileWidth, sample * kTileWidth);
+}
+
+TextureRows::TextureRows(device::DeviceContext& context, TextureShape shape, int most_rows, int cell_columns,
+                         int cell_rows, device::KernelVariant variant)
+    : context_(context),
+      shape_(std::move(shape)),
+      cell_columns_(cell_columns),
+      cell_rows_(cell_rows),
+      most_rows_(device::roundUp(size(most_rows), kTileRows)) {
+  assert(shape_.scale.size() == size(shape_.differences) * size(shape_.channels));
+  assert(shape_.zero.size() == shape_.scale.size());
+  const bool gpu = context.resolve(variant) == device::KernelVariant::kGpu;
+  items_per_tile_ = gpu ? kTileWidth : 1;
+  kernel_ = context.kernel("blend.cl", "blend", definesOf(shape_, gpu));
+  local_size_ = context.workGroupSize(kernel_, gpu ? 64 : 16);
+  textures_ = context.allocate(most_rows_ / kTileRows * shape_.tilesBytes(), CL_MEM_READ_ONLY, "the textures of a map");
+  encoding_ = context.upload(encodingOf(shape_), "the encoding of difference textures");
+  kernel_.setArg(0, textures_);
+  kernel_.setArg(2, encoding_);
+}
+
+void TextureRows::setRows(int begin, int end) {
+  assert(begin % kTileRows == 0 && begin < end && size(end - begin) <= most_rows_);
+  begin_ = begin;
+  end_ = end;
+}
+
+void TextureRows::load(int first, int rows, std::span<const std::byte> neutral,
+                       std::span<const std::span<const std::byte>> differences) {
+  assert(first % kTileRows == 0 && begin_ <= first && first + rows <= end_);
+  assert(neutral.size() == size(rows) * shape_.rowBytes() && differences.size() == size(shape_.differences));
+  const int tile_rows = (rows + kTileRows - 1) / kTileRows;
+  const std::size_t tile_bytes = kTileRows * shape_.tileRowBytes();
+  const std::size_t neutral_bytes = size(shape_.channels) * kTileWidth * image::sampleBytes(shape_.sample_type);
+  tiles_.resize(size(tile_rows) * shape_.tilesBytes());
+  tbb::parallel_for(0, rows, [&](int row) {
+    std::byte* to =
+        tiles_.data() + size(row / kTileRows) * shape_.tilesBytes() + size(row % kTileRows) * shape_.tileRowBytes();
+    splitNeutralRow(shape_, neutral.data() + size(row) * shape_.rowBytes(), tile_bytes, to);
+    for (int i = 0; i < shape_.differences; ++i) {
+      splitRow<std::uint8_t>(differences[size(i)].data() + size(row) * shape_.differenceRowBytes(), shape_.width,
+                             shape_.channels, tile_bytes,
+                             to + neutral_bytes + size(i) * size(shape_.channels) * kTileWidth);
+    }
+  });
+  context_.write(textures_, tiles_.data(), tiles_.size(), "the textures of a map",
+                 size((first - begin_) / kTileRows) * shape_.tilesBytes());
+}
+
+std::size_t TextureRows::paddedRowBytes() const {
+  return size(shape_.tilesAcross()) * kTileWidth * size(shape_.channels) * image::sampleBytes(shape_.sample_type);
+}
+
+cl::Event TextureRows::enqueue(const cl::Buffer& weights, const cl::Buffer& frame) {
+  const std::size_t tiles = size(tileRowCount()) * size(shape_.tilesAcross());
+  kernel_.setArg(1, weights);
+  kernel_.setArg(3, frame);
+  kernel_.setArg(4, static_cast<cl_int>(shape_.tilesAcross()));
+  kernel_.setArg(5, static_cast<cl_ulong>(tiles));
+  kernel_.setArg(6, static_cast<cl_int>(begin_ / kTileRows));
+  kernel_.setArg(7, static_cast<cl_int>(cell_columns_));
+  kernel_.setArg(8, static_cast<cl_int>(cell_rows_));
+  return context_.run(kernel_, cl::NDRange(device::roundUp(tiles * items_per_tile_, local_size_)),
+                      cl::NDRange(local_size_));
+}
+
+/// True when the kernel may write into the caller's memory: no padding in the frame, vector stores aligned, and a
+/// device that shares the host's memory.
+bool TextureRows::fitsFrame(std::span<const std::byte> out) const {
+  constexpr std::size_t kWidestStore = 64;  // float16 and uint16; three 8-bit channels go out in uchar16
+  const bool narrow = shape_.channels == 3 && shape_.sample_type == image::SampleType::kUint8;
+  const std::size_t alignment = narrow ? kTileWidth : kWidestStore;
+  return context_.info().type == DeviceInfo::Type::kCpu && out.size() == frameBytes() &&
+         reinterpret_cast<std::uintptr_t>(out.data()) % alignment == 0;
+}
+
+void TextureRows::blend(const cl::Buffer& weights, std::span<std::byte> out) {
+  assert(out.size() == size(end_ - begin_) * shape_.rowBytes());
+  try {
+    if (fitsFrame(out)) {
+      const cl::Buffer frame(context_.context(), CL_MEM_WRITE_ONLY | CL_MEM_USE_HOST_PTR, out.size(), out.data());
+      enqueue(weights, frame);
+      // Mapping is what makes the result visible at `out`; on a device that shares memory it copies nothing.
+      void* mapped = context_.queue().enqueueMapBuffer(frame, CL_TRUE, CL_MAP_READ, 0, out.size());
+      context_.queue().enqueueUnmapMemObject(frame, mapped);
+      context_.finish();
+      return;
+    }
+    if (frame_() == nullptr) {
+      frame_ = context_.allocate(most_rows_ * paddedRowBytes(), CL_MEM_WRITE_ONLY | CL_MEM_ALLOC_HOST_PTR, "a frame");
+    }
+    enqueue(weights, frame_);
+    const void* mapped = context_.queue().enqueueMapBuffer(frame_, CL_TRUE, CL_MAP_READ, 0, frameBytes());
+    for (int row = 0; row < end_ - begin_; ++row) {
+      std::memcpy(out.data() + size(row) * shape_.rowBytes(),
+                  static_cast<const std::byte*>(mapped) + size(row) * paddedRowBytes(), shape_.rowBytes());
+    }
+    context_.queue().enqueueUnmapMemObject(frame_, const_cast<void*>(mapped));
+    context_.finish();
+  } catch (const cl::Error& error) {
+    throw device::toDeviceError(error, "reading a frame", context_.info());
+  }
+}
+
+std::pair<int, int> cellRowsOf(int begin, int end, int weight_scale, int cell_rows) {
+  const auto above = [weight_scale](int row) { return floorDivide(2 * row + 1 - weight_scale, 2 * weight_scale); };
+  return {std::clamp(above(begin), 0, cell_rows - 1), std::clamp(above(end - 1) + 2, 1, cell_rows)};
+}
+
+}  // namespace facezip::blend

@@ -1,0 +1,93 @@
+// blend.hpp - textures of one map on a device in tiles, and frames blended from them (Eq. 8).
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "blend/weight_blend.hpp"
+#include "device/device_context.hpp"
+#include "image/image_file.hpp"
+
+namespace facezip::blend {
+
+inline constexpr int kTileWidth = 16;  ///< texels, kernels/cl/blend.cl
+inline constexpr int kTileRows = 8;    ///< texels
+
+/// What a map's textures are, for the kernel.
+struct TextureShape {
+  int width = 0;                                              ///< texels
+  int channels = 0;                                           ///< 1 to 4
+  int differences = 0;                                        ///< C, 1 to 8
+  image::SampleType sample_type = image::SampleType::kUint8;  ///< of neutral and frame
+  int weight_scale = 0;                                       ///< s
+  std::vector<float>
+      scale;  ///< [C][channels], steps of a sample (8-bit 1, 16-bit 1/257 and float 255 in 1/255) per code
+  std::vector<float> zero;  ///< [C][channels], the code that means 0
+
+  int tilesAcross() const { return (width + kTileWidth - 1) / kTileWidth; }
+  std::size_t rowBytes() const { return frameShape(1).rowBytes(); }  ///< of neutral and frame
+  std::size_t differenceRowBytes() const {
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
+  }
+  /// One texel row of one tile: 16 texels of the neutral and of all differences, padded so that each row's neutral is
+  /// aligned for a vector load.
+  std::size_t tileRowBytes() const;
+  /// A row of tiles.
+  std::size_t tilesBytes() const { return static_cast<std::size_t>(tilesAcross()) * kTileRows * tileRowBytes(); }
+  image::ImageShape frameShape(int rows) const { return {width, rows, channels, sample_type}; }
+};
+
+/// The device side of kernels/cl/blend.cl: rows [begin, end) of a map.
+class TextureRows {
+ public:
+  /// Allocates for `most_rows` rows. cell_columns, cell_rows: size of the weight grid. Throws DeviceError.
+  TextureRows(device::DeviceContext& context, TextureShape shape, int most_rows, int cell_columns, int cell_rows,
+              device::KernelVariant variant = device::KernelVariant::kAuto);
+
+  const TextureShape& shape() const { return shape_; }
+  int begin() const { return begin_; }
+  int end() const { return end_; }
+
+  /// From now on rows [begin, end) are held; begin is a multiple of kTileRows.
+  void setRows(int begin, int end);
+
+  /// Puts rows [first, first + rows) into tiles; first a multiple of kTileRows, rows too or up to end().
+  /// neutral      rows x rowBytes()
+  /// differences  C spans of rows x differenceRowBytes()
+  void load(int first, int rows, std::span<const std::byte> neutral,
+            std::span<const std::span<const std::byte>> differences);
+
+  /// Blends rows [begin(), end()) into `out`, (end - begin) x rowBytes() bytes, and waits.
+  /// weights  [blocks][C][16] float, WeightMaps::weights()
+  void blend(const cl::Buffer& weights, std::span<std::byte> out);
+
+  /// Runs the kernel into `frame`, frameBytes() bytes whose rows are padded to whole tiles; for blend() and benchmarks.
+  cl::Event enqueue(const cl::Buffer& weights, const cl::Buffer& frame);
+  std::size_t frameBytes() const { return static_cast<std::size_t>(tileRowCount()) * kTileRows * paddedRowBytes(); }
+  std::size_t paddedRowBytes() const;
+
+ private:
+  int tileRowCount() const { return (end_ - begin_ + kTileRows - 1) / kTileRows; }
+  bool fitsFrame(std::span<const std::byte> out) const;
+
+  device::DeviceContext& context_;
+  TextureShape shape_;
+  int cell_columns_;
+  int cell_rows_;
+  int begin_ = 0;
+  int end_ = 0;
+  std::size_t items_per_tile_;
+  cl::Kernel kernel_;
+  std::size_t local_size_;
+  cl::Buffer textures_;
+  cl::Buffer encoding_;
+  cl::Buffer frame_;  // made when a frame is first copied out
+  std::size_t most_rows_;
+  std::vector<std::byte> tiles_;  // staging of load()
+};
+
+/// Cell rows [first, second) that texel rows [begin, end) interpolate between.
+std::pair<int, int> cellRowsOf(int begin, int end, int weight_scale, int cell_rows);
+
+}  // namespace facezip::blend

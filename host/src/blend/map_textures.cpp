@@ -1,0 +1,78 @@
+#include "blend/map_textures.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "package/package_files.hpp"
+#include "package/weight_atlas.hpp"
+
+namespace facezip::blend {
+namespace {
+
+/// Rows read at a time: enough to spread over threads, small beside a map.
+constexpr int kRowsAtOnce = 8 * kTileRows;
+
+}  // namespace
+
+TextureShape textureShape(const PackageMap& map, int differences) {
+  TextureShape shape;
+  shape.width = map.width;
+  shape.channels = map.channels;
+  shape.differences = differences;
+  shape.sample_type = package::imageSampleType(map.sample_type);
+  shape.weight_scale = map.weight_scale;
+  const double step = 1.0 / static_cast<double>(image::unit255(shape.sample_type));
+  for (const PackageDifference& difference : map.differences) {
+    for (std::size_t c = 0; c < difference.scale.size(); ++c) {
+      shape.scale.push_back(static_cast<float>(difference.scale[c] * step));
+      // A whole number by the format's rule; the division leaves a rounding error that would make zero inexact.
+      const double zero = difference.scale[c] > 0.0 ? std::round(-difference.offset[c] / difference.scale[c]) : 0.0;
+      shape.zero.push_back(static_cast<float>(zero));
+    }
+  }
+  return shape;
+}
+
+MapReader::MapReader(const Package& package, int map_index) {
+  const PackageMap& map = package.maps()[static_cast<std::size_t>(map_index)];
+  images_.push_back(package::openImage(package.directory() / map.neutral_file, package::neutralShape(map)));
+  for (const PackageDifference& difference : map.differences) {
+    images_.push_back(package::openImage(package.directory() / difference.file, package::differenceShape(map)));
+  }
+  row_bytes_.resize(images_.size());
+}
+
+void MapReader::load(TextureRows& textures) {
+  std::vector<std::span<const std::byte>> differences(images_.size() - 1);
+  for (int first = textures.begin(); first < textures.end(); first += kRowsAtOnce) {
+    const int rows = std::min(kRowsAtOnce, textures.end() - first);
+    tbb::parallel_for(std::size_t{0}, images_.size(), [&](std::size_t i) {
+      row_bytes_[i].resize(static_cast<std::size_t>(rows) * images_[i].shape().rowBytes());
+      images_[i].readRows(first, first + rows, row_bytes_[i]);
+    });
+    for (std::size_t i = 0; i < differences.size(); ++i) differences[i] = row_bytes_[i + 1];
+    textures.load(first, rows, row_bytes_[0], differences);
+  }
+}
+
+std::shared_ptr<WeightMaps> loadWeightMaps(const Package& package, device::DeviceContext& context) {
+  const PackageWeights& weights = package.weights();
+  const WeightGrid grid{weights.tile_width, weights.tile_height, static_cast<int>(package.expressions().size()),
+                        weights.scale, weights.offset};
+  std::vector<std::byte> codes(grid.codeBytes());
+  package::readWeightAtlas(
+      package.description(), package.directory(),
+      [&](int expression, int cell_row, int first_channel, int row_channels, std::span<const std::byte> row) {
+        const std::size_t first_cell = static_cast<std::size_t>(cell_row) * static_cast<std::size_t>(grid.columns);
+        const std::size_t channels = static_cast<std::size_t>(row_channels);
+        for (std::size_t b = 0; b < row.size(); ++b) {
+          const int channel = first_channel + static_cast<int>(b % channels);
+          codes[grid.codeIndex(expression, first_cell + b / channels, channel)] = row[b];
+        }
+      });
+  return std::make_shared<WeightMaps>(context, grid, codes);
+}
+
+}  // namespace facezip::blend

@@ -1,0 +1,34 @@
+// map_textures.hpp - the images of one map of a package, read from disk into a TextureRows.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "blend/blend.hpp"
+#include "facezip/package.hpp"
+#include "image/image_file.hpp"
+
+namespace facezip::blend {
+
+/// The encoding and shape of a map's textures as the kernel wants them: differences in steps of the neutral's samples.
+TextureShape textureShape(const PackageMap& map, int differences);
+
+/// Opens neutral and differences of one map and streams their rows.
+class MapReader {
+ public:
+  /// Throws InputError.
+  MapReader(const Package& package, int map_index);
+
+  /// Reads rows textures.begin() to textures.end() from disk into `textures`. Throws InputError, DeviceError.
+  void load(TextureRows& textures);
+
+ private:
+  std::vector<image::ImageReader> images_;         // neutral, then C differences
+  std::vector<std::vector<std::byte>> row_bytes_;  // a few rows of each
+};
+
+/// Reads the weight atlas onto the device of `context`.
+std::shared_ptr<WeightMaps> loadWeightMaps(const Package& package, device::DeviceContext& context);
+
+}  // namespace facezip::blend

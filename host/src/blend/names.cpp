@@ -1,0 +1,110 @@
+#include "blend/names.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <numeric>
+
+#include "blend/number.hpp"
+#include "facezip/blend.hpp"
+#include "package/package_json.hpp"
+
+namespace facezip {
+namespace blend {
+
+int editDistance(std::string_view a, std::string_view b) {
+  const auto same = [](char x, char y) {
+    return std::tolower(static_cast<unsigned char>(x)) == std::tolower(static_cast<unsigned char>(y));
+  };
+  // Rows i-2, i-1 and i of the table; a swap of neighbours reaches back two.
+  std::vector<int> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
+  std::iota(above.begin(), above.end(), 0);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    row[0] = static_cast<int>(i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      row[j] = std::min({above[j] + 1, row[j - 1] + 1, above[j - 1] + (same(a[i - 1], b[j - 1]) ? 0 : 1)});
+      const bool swapped = i > 1 && j > 1 && same(a[i - 1], b[j - 2]) && same(a[i - 2], b[j - 1]);
+      if (swapped) row[j] = std::min(row[j], before[j - 2] + 1);
+    }
+    std::swap(before, above);
+    std::swap(above, row);
+  }
+  return above[b.size()];
+}
+
+std::vector<std::string> nearestNames(const std::string& name, const std::vector<std::string>& names,
+                                      std::size_t most) {
+  std::vector<std::pair<int, std::size_t>> ranked;
+  for (std::size_t n = 0; n < names.size(); ++n) ranked.emplace_back(editDistance(name, names[n]), n);
+  std::sort(ranked.begin(), ranked.end());
+  std::vector<std::string> nearest;
+  for (std::size_t r = 0; r < std::min(most, ranked.size()); ++r) nearest.push_back(names[ranked[r].second]);
+  return nearest;
+}
+
+int expressionIndex(const Package& package, const std::string& name, const std::string& item) {
+  const std::vector<std::string>& names = package.expressions();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<int>(found - names.begin());
+  throw InputError({package.directory().string(), item, "an expression of the package", package::quoted(name),
+                    fmt::format("the nearest are {}", fmt::join(nearestNames(name, names), ", "))});
+}
+
+std::string_view trimmed(std::string_view text) {
+  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+std::optional<float> parseNumber(std::string_view text) {
+  text = trimmed(text);
+  if (text.starts_with('+')) text.remove_prefix(1);
+  float value = 0.0f;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+}  // namespace blend
+
+std::vector<float> weightsByName(const Package& package, const std::vector<std::pair<std::string, float>>& weights) {
+  std::vector<float> beta(package.expressions().size(), 0.0f);
+  std::vector<bool> given(beta.size(), false);
+  for (const auto& [name, weight] : weights) {
+    const std::size_t n = static_cast<std::size_t>(blend::expressionIndex(package, name, "weights"));
+    if (given[n]) throw InputError({"", "weights", "each expression once", package::quoted(name) + " twice", ""});
+    if (!std::isfinite(weight)) {
+      throw InputError({"", "weights", "a finite number for " + name, fmt::format("{}", weight), ""});
+    }
+    given[n] = true;
+    beta[n] = weight;
+  }
+  return beta;
+}
+
+std::vector<std::pair<std::string, float>> parseWeights(std::string_view text) {
+  std::vector<std::pair<std::string, float>> weights;
+  if (blend::trimmed(text).empty()) return weights;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::string_view part = text.substr(begin, end - begin);
+    const std::size_t equals = part.rfind('=');
+    const std::string name(blend::trimmed(part.substr(0, std::min(equals, part.size()))));
+    const std::optional<float> weight =
+        equals == std::string_view::npos ? std::nullopt : blend::parseNumber(part.substr(equals + 1));
+    if (name.empty() || !weight) {
+      throw InputError({"", "weights", "NAME=NUMBER, separated by commas", package::quoted(std::string(part)), ""});
+    }
+    weights.emplace_back(name, *weight);
+    begin = end + 1;
+  }
+  return weights;
+}
+
+}  // namespace facezip

@@ -1,0 +1,102 @@
+#include "facezip/reconstruct.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <vector>
+
+#include "blend/band_blender.hpp"
+#include "blend/names.hpp"
+#include "image/image_file.hpp"
+#include "io/staged_directory.hpp"
+#include "package/package_files.hpp"
+
+namespace facezip {
+namespace fs = std::filesystem;
+namespace {
+
+/// Textures of a band and one frame of it; images of any height pass through.
+constexpr std::size_t kBandBytes = std::size_t{256} << 20;
+/// Image files open at once: a process may hold 1024 by default. More expressions take another pass over the textures.
+constexpr std::size_t kFilesAtOnce = 200;
+
+std::vector<int> chosenExpressions(const Package& package, std::span<const std::string> names) {
+  std::vector<int> chosen;
+  if (names.empty()) {
+    for (std::size_t n = 0; n < package.expressions().size(); ++n) chosen.push_back(static_cast<int>(n));
+  }
+  for (const std::string& name : names) chosen.push_back(blend::expressionIndex(package, name, "expression"));
+  std::set<int> seen;
+  for (const int n : chosen) {
+    if (seen.insert(n).second) continue;
+    throw InputError(
+        {"", "expression", "each once", package.expressions()[static_cast<std::size_t>(n)] + " twice", ""});
+  }
+  return chosen;
+}
+
+std::vector<image::ImageWriter> openWriters(const Package& package, const PackageMap& map,
+                                            std::span<const int> expressions, const fs::path& folder) {
+  const char* extension = map.sample_type == SampleType::kFloat32 ? ".exr" : ".png";
+  std::vector<image::ImageWriter> writers;
+  for (const int n : expressions) {
+    writers.emplace_back(folder / (package.expressions()[static_cast<std::size_t>(n)] + extension),
+                         package::neutralShape(map), map.colour_space);
+  }
+  return writers;
+}
+
+/// One pass over the textures of a map, for a few expressions.
+void reconstructMap(const Package& package, const PackageMap& map, blend::BandBlender& blender,
+                    std::span<const int> expressions, const fs::path& folder, Progress& progress, std::size_t& done) {
+  std::vector<image::ImageWriter> writers = openWriters(package, map, expressions, folder);
+  const int band_rows = blender.rowsWithin(kBandBytes);
+  std::vector<float> beta(package.expressions().size(), 0.0f);
+  std::vector<std::byte> frame;
+  for (int begin = 0; begin < map.height; begin += band_rows) {
+    const int rows = std::min(band_rows, map.height - begin);
+    blender.loadRows(begin, begin + rows);
+    frame.resize(static_cast<std::size_t>(rows) * package::neutralShape(map).rowBytes());
+    for (std::size_t w = 0; w < writers.size(); ++w) {
+      progress.checkCancelled();
+      const std::size_t n = static_cast<std::size_t>(expressions[w]);
+      beta[n] = 1.0f;
+      blender.blend(beta, frame);
+      beta[n] = 0.0f;
+      writers[w].writeRows(frame, rows);
+      progress.advance(done += static_cast<std::size_t>(rows));
+    }
+  }
+  for (image::ImageWriter& writer : writers) writer.close();
+}
+
+std::size_t totalRows(const Package& package, std::size_t expressions) {
+  std::size_t rows = 0;
+  for (const PackageMap& map : package.maps()) rows += static_cast<std::size_t>(map.height) * expressions;
+  return rows;
+}
+
+}  // namespace
+
+void reconstruct(const Package& package, const fs::path& output, std::span<const std::string> expressions,
+                 const Device& device, Progress& progress) {
+  const std::vector<int> chosen = chosenExpressions(package, expressions);
+  io::StagedDirectory staged(output, io::StagedDirectory::Existing::kMerge);
+  progress.stage("reconstruct", totalRows(package, chosen.size()));
+  const auto weights = blend::loadWeightMaps(package, device);
+  std::size_t done = 0;
+  for (std::size_t m = 0; m < package.maps().size(); ++m) {
+    const PackageMap& map = package.maps()[m];
+    io::createDirectories(staged.path() / map.name);
+    blend::BandBlender blender(package, static_cast<int>(m), weights, device);
+    for (std::size_t begin = 0; begin < chosen.size(); begin += kFilesAtOnce) {
+      const std::size_t count = std::min(kFilesAtOnce, chosen.size() - begin);
+      reconstructMap(package, map, blender, std::span(chosen).subspan(begin, count), staged.path() / map.name, progress,
+                     done);
+    }
+  }
+  staged.commit();
+}
+
+}  // namespace facezip

@@ -1,0 +1,79 @@
+#include "blend/weight_blend.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "facezip/error.hpp"
+
+namespace facezip::blend {
+
+WeightMaps::WeightMaps(device::DeviceContext& context, WeightGrid grid, std::span<const std::byte> codes,
+                       device::KernelVariant variant)
+    : context_(context), grid_(std::move(grid)) {
+  assert(codes.size() == grid_.codeBytes());
+  const bool gpu = context.resolve(variant) == device::KernelVariant::kGpu;
+  items_per_block_ = gpu ? 16 : 1;
+  kernel_ = context.kernel("weight_blend.cl", "weight_blend",
+                           fmt::format("-D LANES={} -D DIFFERENCES={}", gpu ? 1 : 16, grid_.channels()));
+  local_size_ = context.workGroupSize(kernel_, gpu ? 64 : 16);
+  const std::size_t expressions = static_cast<std::size_t>(grid_.expressions);
+  const std::size_t channels = static_cast<std::size_t>(grid_.channels());
+  codes_ = context.upload(codes, "the weight maps");
+  active_ = context.allocate(expressions * sizeof(cl_int), CL_MEM_READ_ONLY, "expressions in use");
+  beta_ = context.allocate(expressions * sizeof(float), CL_MEM_READ_ONLY, "blendshape weights");
+  encoding_ = context.allocate(2 * channels * sizeof(float), CL_MEM_READ_ONLY, "weight encoding");
+  weights_ = context.allocate(grid_.blocks() * channels * 16 * sizeof(float), CL_MEM_READ_WRITE, "blended weights");
+  kernel_.setArg(0, codes_);
+  kernel_.setArg(1, active_);
+  kernel_.setArg(2, beta_);
+  kernel_.setArg(3, encoding_);
+  kernel_.setArg(4, weights_);
+}
+
+cl::Event WeightMaps::blend(std::span<const float> beta, int begin_row, int end_row) {
+  assert(beta.size() == static_cast<std::size_t>(grid_.expressions));
+  assert(0 <= begin_row && begin_row < end_row && end_row <= grid_.rows);
+  active_expressions_.clear();
+  active_beta_.clear();
+  double beta_sum = 0.0;
+  for (std::size_t n = 0; n < beta.size(); ++n) {
+    if (beta[n] == 0.0f) continue;
+    active_expressions_.push_back(static_cast<cl_int>(n));
+    active_beta_.push_back(beta[n]);
+    beta_sum += static_cast<double>(beta[n]);
+  }
+  std::vector<float> encoding;
+  for (const double scale : grid_.scale) encoding.push_back(static_cast<float>(scale));
+  for (const double offset : grid_.offset) encoding.push_back(static_cast<float>(offset * beta_sum));
+  context_.write(active_, active_expressions_.data(), active_expressions_.size() * sizeof(cl_int),
+                 "expressions in use");
+  context_.write(beta_, active_beta_.data(), active_beta_.size() * sizeof(float), "blendshape weights");
+  context_.write(encoding_, encoding.data(), encoding.size() * sizeof(float), "weight encoding");
+
+  const std::size_t columns = static_cast<std::size_t>(grid_.columns);
+  const std::size_t first_block = static_cast<std::size_t>(begin_row) * columns / 16;
+  const std::size_t end_block = (static_cast<std::size_t>(end_row) * columns + 15) / 16;
+  kernel_.setArg(5, static_cast<cl_int>(active_expressions_.size()));
+  kernel_.setArg(6, static_cast<cl_int>(grid_.expressions));
+  kernel_.setArg(7, static_cast<cl_ulong>(first_block));
+  kernel_.setArg(8, static_cast<cl_ulong>(end_block - first_block));
+  const std::size_t items = (end_block - first_block) * items_per_block_;
+  return context_.run(kernel_, cl::NDRange(device::roundUp(items, local_size_)), cl::NDRange(local_size_));
+}
+
+void requireWeights(std::span<const float> beta, std::span<const std::string> names) {
+  if (beta.size() != names.size()) {
+    throw InputError({"", "blendshape weights", fmt::format("{} values, one per expression", names.size()),
+                      fmt::format("{}", beta.size()), ""});
+  }
+  for (std::size_t n = 0; n < beta.size(); ++n) {
+    if (std::isfinite(beta[n])) continue;
+    throw InputError({"", fmt::format("blendshape weight of {}", names[n]), "a finite number",
+                      std::isnan(beta[n]) ? "NaN" : "infinity", ""});
+  }
+}
+
+}  // namespace facezip::blend

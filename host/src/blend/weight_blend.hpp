@@ -1,0 +1,75 @@
+// weight_blend.hpp - the weight maps of all expressions on a device, and their sum under blendshape weights (Eq. 8).
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "device/device_context.hpp"
+
+namespace facezip::blend {
+
+/// Shape and decoding of the weight maps: W = scale[i] * code + offset[i].
+struct WeightGrid {
+  int columns = 0;             ///< cells
+  int rows = 0;                ///< cells
+  int expressions = 0;         ///< N
+  std::vector<double> scale;   ///< C
+  std::vector<double> offset;  ///< C
+
+  int channels() const { return static_cast<int>(scale.size()); }  ///< C
+  std::size_t cells() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
+  /// Blocks of 16 cells, the last one padded.
+  std::size_t blocks() const { return (cells() + 15) / 16; }
+  std::size_t codeBytes() const {
+    return blocks() * 16 * static_cast<std::size_t>(expressions) * static_cast<std::size_t>(channels());
+  }
+  /// Where the code of `expression`, `cell` (row-major) and `channel` stands in [blocks][N][C][16].
+  std::size_t codeIndex(int expression, std::size_t cell, int channel) const {
+    const std::size_t planes = static_cast<std::size_t>(expressions) * static_cast<std::size_t>(channels());
+    const std::size_t plane =
+        static_cast<std::size_t>(expression) * static_cast<std::size_t>(channels()) + static_cast<std::size_t>(channel);
+    return ((cell / 16) * planes + plane) * 16 + cell % 16;
+  }
+};
+
+/// The device side of kernels/cl/weight_blend.cl.
+class WeightMaps {
+ public:
+  /// codes  grid.codeBytes() bytes in the order of grid.codeIndex()
+  /// Throws DeviceError.
+  WeightMaps(device::DeviceContext& context, WeightGrid grid, std::span<const std::byte> codes,
+             device::KernelVariant variant = device::KernelVariant::kAuto);
+
+  const WeightGrid& grid() const { return grid_; }
+
+  /// Sums the weight maps of cell rows [begin_row, end_row) into weights(); other rows are left as they were.
+  /// Expressions whose beta is 0 cost nothing and change no bit.
+  /// beta  N finite values
+  cl::Event blend(std::span<const float> beta, int begin_row, int end_row);
+  cl::Event blend(std::span<const float> beta) { return blend(beta, 0, grid_.rows); }
+
+  /// [blocks][C][16] float, the result of blend().
+  const cl::Buffer& weights() const { return weights_; }
+
+ private:
+  device::DeviceContext& context_;
+  WeightGrid grid_;
+  std::size_t items_per_block_;
+  cl::Kernel kernel_;
+  std::size_t local_size_;
+  cl::Buffer codes_;
+  cl::Buffer active_;
+  cl::Buffer beta_;
+  cl::Buffer encoding_;
+  cl::Buffer weights_;
+  std::vector<cl_int> active_expressions_;
+  std::vector<float> active_beta_;
+};
+
+/// Throws InputError that names the expression (by index, or by `names` when given) whose weight is not finite, or
+/// says how many weights were expected.
+void requireWeights(std::span<const float> beta, std::span<const std::string> names);
+
+}  // namespace facezip::blend

@@ -1,0 +1,75 @@
+#include "facezip/package.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "package/package_files.hpp"
+#include "package/package_json.hpp"
+
+namespace facezip {
+namespace fs = std::filesystem;
+namespace {
+
+std::string readDescription(const fs::path& file) {
+  constexpr std::uintmax_t kLargest = 64u << 20;  // a package of 65536 expressions stays below
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) {
+    throw InputError({file.string(), "", "the description of a facezip package", "no such file",
+                      "name a directory that `facezip compress` wrote"});
+  }
+  const std::uintmax_t bytes = fs::file_size(file, error);
+  if (error || bytes > kLargest) {
+    throw InputError({file.string(), "", fmt::format("at most {} bytes", kLargest), fmt::format("{}", bytes), ""});
+  }
+  std::ifstream stream(file, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!stream && !stream.eof()) throw InputError({file.string(), "", "a readable file", "a read error", ""});
+  return text;
+}
+
+std::size_t sampleBytes(SampleType type) { return image::sampleBytes(package::imageSampleType(type)); }
+
+}  // namespace
+
+std::size_t PackageMap::frameBytes() const {
+  return static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * static_cast<std::size_t>(channels) *
+         sampleBytes(sample_type);
+}
+
+Package Package::open(const fs::path& directory) {
+  Package package;
+  package.directory_ = directory.filename() == package::kDescriptionFile && !fs::is_directory(directory)
+                           ? directory.parent_path()
+                           : directory;
+  const fs::path file = package.directory_ / package::kDescriptionFile;
+  const std::string text = readDescription(file);
+  package.description_ = package::parsePackageJson(text, file.string());
+  package.bytes_on_disk_ = text.size() + package::checkImages(package.description_, package.directory_);
+  return package;
+}
+
+int Package::mapIndex(const std::string& map_name) const {
+  std::vector<std::string> names;
+  for (std::size_t m = 0; m < maps().size(); ++m) {
+    if (maps()[m].name == map_name) return static_cast<int>(m);
+    names.push_back(maps()[m].name);
+  }
+  throw InputError({directory_.string(), "map", fmt::format("{}", fmt::join(names, ", ")), map_name, ""});
+}
+
+std::uint64_t Package::bytesInMemory() const {
+  std::uint64_t bytes = 0;
+  for (const PackageMap& map : maps()) {
+    const std::uint64_t samples = map.frameBytes() / sampleBytes(map.sample_type);
+    bytes += map.frameBytes() + samples * static_cast<std::uint64_t>(differences());
+  }
+  const std::uint64_t cells =
+      static_cast<std::uint64_t>(weights().tile_width) * static_cast<std::uint64_t>(weights().tile_height);
+  return bytes + cells * expressions().size() * static_cast<std::uint64_t>(differences());
+}
+
+}  // namespace facezip

@@ -1,0 +1,26 @@
+// package_files.hpp - the images of a package: their names, their shapes, and whether they are what package.json says.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "facezip/package.hpp"
+#include "image/image_file.hpp"
+
+namespace facezip::package {
+
+/// The type that the image layer uses for a map's samples.
+image::SampleType imageSampleType(SampleType type);
+
+image::ImageShape neutralShape(const PackageMap& map);
+image::ImageShape differenceShape(const PackageMap& map);
+
+/// Opens an image of the package. Throws InputError that names the file when it is missing, unreadable or not of
+/// `shape`.
+image::ImageReader openImage(const std::filesystem::path& file, const image::ImageShape& shape);
+
+/// Opens every image of `description` and checks its shape and that it is not cut short.
+/// Returns the bytes of all of them. Throws InputError that names the file.
+std::uint64_t checkImages(const PackageDescription& description, const std::filesystem::path& directory);
+
+}  // namespace facezip::package

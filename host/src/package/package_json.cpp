@@ -1,0 +1,252 @@
+#include "package/package_json.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdint>
+#include <set>
+#include <utility>
+
+#include "package/json_field.hpp"
+#include "package/package_writer.hpp"
+
+namespace facezip::package {
+namespace {
+using nlohmann::json;
+using Document = nlohmann::ordered_json;  // fields in the order of docs/package_format.md
+
+constexpr double kLargestCoefficient = 1e9;
+constexpr std::pair<SampleType, const char*> kSampleTypes[] = {
+    {SampleType::kUint8, "8-bit"}, {SampleType::kUint16, "16-bit"}, {SampleType::kFloat32, "float"}};
+
+const char* sampleTypeText(SampleType type) {
+  for (const auto& [value, text] : kSampleTypes) {
+    if (value == type) return text;
+  }
+  return "";
+}
+
+Document mapJson(const PackageMap& map) {
+  Document differences = Document::array();
+  for (const PackageDifference& difference : map.differences) {
+    differences.push_back({{"file", difference.file}, {"scale", difference.scale}, {"offset", difference.offset}});
+  }
+  return {{"name", map.name},
+          {"width", map.width},
+          {"height", map.height},
+          {"channels", map.channels},
+          {"sample_type", sampleTypeText(map.sample_type)},
+          {"colour_space", map.colour_space},
+          {"weight_scale", map.weight_scale},
+          {"metric_weight", map.metric_weight},
+          {"neutral", {{"file", map.neutral_file}}},
+          {"differences", differences}};
+}
+
+/// A name that becomes a file or folder name when textures are written: it must not leave the folder, nor hide in it.
+std::string fileSafeName(const JsonField& field) {
+  constexpr std::size_t kLongest = 200;  // file systems stop at 255, and an extension follows
+  const std::string name = field.text();
+  const std::string expected = "a name without '/', '\\', '..', a leading '.' or control characters";
+  if (name.empty()) field.fail(expected, "an empty name");
+  if (name.size() > kLongest) field.fail(fmt::format("a name of at most {} bytes", kLongest), quoted(name));
+  bool safe = name.front() != '.' && name.find("..") == std::string::npos;
+  for (const char c : name) safe = safe && static_cast<unsigned char>(c) >= 0x20 && c != 0x7f && c != '/' && c != '\\';
+  if (!safe) field.fail(expected, quoted(name));
+  return name;
+}
+
+std::string fileInPackage(const JsonField& field, const std::string& extension) {
+  const std::string name = field.text();
+  bool safe = !name.empty() && name.size() < 4096;
+  std::size_t begin = 0;
+  while (safe && begin <= name.size()) {
+    const std::size_t end = std::min(name.find('/', begin), name.size());
+    const std::string part = name.substr(begin, end - begin);
+    safe = !part.empty() && part != "." && part.find("..") == std::string::npos;
+    begin = end + 1;
+  }
+  for (const char c : name) safe = safe && static_cast<unsigned char>(c) >= 0x20 && c != 0x7f && c != '\\' && c != ':';
+  if (!safe) field.fail("a path inside the package, without '..'", quoted(name));
+  if (!name.ends_with(extension)) field.fail(fmt::format("the name of a {} file", extension), quoted(name));
+  return name;
+}
+
+void requireUnique(const std::vector<JsonField>& fields, const char* what) {
+  std::set<std::string> seen;
+  for (const JsonField& field : fields) {
+    if (!seen.insert(field.text()).second) field.fail(fmt::format("unique {} names", what), field.got() + " twice");
+  }
+}
+
+std::vector<std::string> parseExpressions(const JsonField& field) {
+  constexpr std::size_t kMostExpressions = 65536;
+  const std::vector<JsonField> fields = field.elements(1, kMostExpressions);
+  std::vector<std::string> names;
+  for (const JsonField& name : fields) names.push_back(fileSafeName(name));
+  requireUnique(fields, "expression");
+  return names;
+}
+
+std::vector<double> parseNumbers(const JsonField& field, int count, double least, double most) {
+  std::vector<double> numbers;
+  for (const JsonField& number : field.elements(static_cast<std::size_t>(count), static_cast<std::size_t>(count))) {
+    numbers.push_back(number.number(least, most));
+  }
+  return numbers;
+}
+
+PackageWeights parseWeights(const JsonField& field, int expressions, int differences) {
+  PackageWeights weights;
+  const std::size_t files = static_cast<std::size_t>(differences - 1) / 4 + 1;
+  for (const JsonField& file : field["files"].elements(files, files))
+    weights.files.push_back(fileInPackage(file, ".png"));
+  weights.columns = field["columns"].integer(1, kMaxAtlasSide);
+  weights.rows = field["rows"].integer(1, kMaxAtlasSide);
+  weights.tile_width = field["tile_width"].integer(1, kMaxAtlasSide - 2);
+  weights.tile_height = field["tile_height"].integer(1, kMaxAtlasSide - 2);
+  weights.border = field["border"].integer(1, 1);
+  weights.scale = parseNumbers(field["scale"], differences, 0, kLargestCoefficient);
+  weights.offset = parseNumbers(field["offset"], differences, -kLargestCoefficient, kLargestCoefficient);
+  if (weights.columns > kMaxAtlasSide / (weights.tile_width + 2 * weights.border)) {
+    field["columns"].fail(fmt::format("an atlas at most {} cells wide", kMaxAtlasSide), field["columns"].got());
+  }
+  if (weights.rows > kMaxAtlasSide / (weights.tile_height + 2 * weights.border)) {
+    field["rows"].fail(fmt::format("an atlas at most {} cells high", kMaxAtlasSide), field["rows"].got());
+  }
+  if (weights.columns * weights.rows < expressions) {
+    field["rows"].fail(fmt::format("tiles for {} expressions", expressions),
+                       fmt::format("{} x {} tiles", weights.columns, weights.rows));
+  }
+  return weights;
+}
+
+/// Zero must be a code: outside the face a difference is zero, and there the neutral must come back untouched.
+void requireExactZero(const JsonField& field, double scale, double offset) {
+  if (scale == 0.0 && offset == 0.0) return;
+  const double zero_code = std::round(-offset / scale);
+  if (scale > 0.0 && zero_code >= 0.0 && zero_code <= 255.0 && std::abs(offset + scale * zero_code) <= 1e-5 * scale)
+    return;
+  field.fail("-scale times an integer from 0 to 255, so that zero has a code",
+             fmt::format("offset {} at scale {}", offset, scale));
+}
+
+PackageDifference parseDifference(const JsonField& field, int channels) {
+  PackageDifference difference;
+  difference.file = fileInPackage(field["file"], ".png");
+  difference.scale = parseNumbers(field["scale"], channels, 0, kLargestCoefficient);
+  difference.offset = parseNumbers(field["offset"], channels, -255 * kLargestCoefficient, 0);
+  for (std::size_t c = 0; c < difference.scale.size(); ++c) {
+    requireExactZero(field["offset"], difference.scale[c], difference.offset[c]);
+  }
+  return difference;
+}
+
+SampleType parseSampleType(const JsonField& field) {
+  const std::string name = field.text();
+  for (const auto& [value, text] : kSampleTypes) {
+    if (name == text) return value;
+  }
+  field.fail("\"8-bit\", \"16-bit\" or \"float\"", quoted(name));
+}
+
+std::string parseColourSpace(const JsonField& field) {
+  const std::string name = field.text();
+  if (name != "sRGB" && name != "linear" && !name.empty()) field.fail("\"sRGB\", \"linear\" or \"\"", quoted(name));
+  return name;
+}
+
+void requireSameGrid(const JsonField& field, const PackageMap& map, const PackageWeights& weights) {
+  const int columns = weightCells(map.width, map.weight_scale);
+  const int rows = weightCells(map.height, map.weight_scale);
+  if (columns == weights.tile_width && rows == weights.tile_height) return;
+  field.fail(fmt::format("{} x {} texels to need {} x {} cells (weights.tile_width, tile_height)", map.width,
+                         map.height, weights.tile_width, weights.tile_height),
+             fmt::format("{} x {} at weight_scale {}", columns, rows, map.weight_scale));
+}
+
+PackageMap parseMap(const JsonField& field, const PackageWeights& weights, int differences) {
+  PackageMap map;
+  map.name = fileSafeName(field["name"]);
+  map.width = field["width"].integer(1, kMaxSide);
+  map.height = field["height"].integer(1, kMaxSide);
+  map.channels = field["channels"].integer(1, 4);
+  map.sample_type = parseSampleType(field["sample_type"]);
+  map.colour_space = parseColourSpace(field["colour_space"]);
+  map.weight_scale = field["weight_scale"].integer(1, kMaxSide);
+  map.metric_weight = field["metric_weight"].number(0, kLargestCoefficient);
+  map.neutral_file = fileInPackage(field["neutral"]["file"], map.sample_type == SampleType::kFloat32 ? ".exr" : ".png");
+  const std::size_t count = static_cast<std::size_t>(differences);
+  for (const JsonField& difference : field["differences"].elements(count, count)) {
+    map.differences.push_back(parseDifference(difference, map.channels));
+  }
+  requireSameGrid(field, map, weights);
+  return map;
+}
+
+void requireKnownVersion(const JsonField& document) {
+  const JsonField format = document["format"];
+  if (format.text() != "facezip-package")
+    format.fail("\"facezip-package\"", format.got(), "is this a facezip package?");
+  const JsonField version = document["version"];
+  const int number = version.integer(0, INT32_MAX);
+  if (number != kFormatVersion) {
+    version.fail(fmt::format("{}, the version that this facezip reads", kFormatVersion), version.got(),
+                 number > kFormatVersion ? "update facezip" : "write the package again");
+  }
+}
+
+}  // namespace
+
+std::string packageJson(const PackageDescription& description) {
+  const PackageWeights& weights = description.weights;
+  Document maps = Document::array();
+  for (const PackageMap& map : description.maps) maps.push_back(mapJson(map));
+  try {
+    const Document document = {{"format", "facezip-package"},
+                               {"version", kFormatVersion},
+                               {"generator", description.generator},
+                               {"name", description.name},
+                               {"expressions", description.expressions},
+                               {"differences", description.differences},
+                               {"weights",
+                                {{"files", weights.files},
+                                 {"columns", weights.columns},
+                                 {"rows", weights.rows},
+                                 {"tile_width", weights.tile_width},
+                                 {"tile_height", weights.tile_height},
+                                 {"border", weights.border},
+                                 {"scale", weights.scale},
+                                 {"offset", weights.offset}}},
+                               {"maps", maps},
+                               {"method", Document::parse(description.method_json)}};
+    return document.dump(2) + "\n";
+  } catch (const Document::exception& error) {
+    throw InputError({kDescriptionFile, "", "names in UTF-8 and a method record that is JSON", error.what(), ""});
+  }
+}
+
+PackageDescription parsePackageJson(const std::string& text, const std::string& file) {
+  constexpr std::size_t kMostMaps = 256;
+  const json json_document = parseJson(text, file);
+  const JsonField document(json_document, file, "");
+  requireKnownVersion(document);
+  PackageDescription description;
+  description.generator = document["generator"].text();
+  description.name = document["name"].text();
+  description.expressions = parseExpressions(document["expressions"]);
+  description.differences = document["differences"].integer(1, kMaxDifferences);
+  description.weights =
+      parseWeights(document["weights"], static_cast<int>(description.expressions.size()), description.differences);
+  const std::vector<JsonField> maps = document["maps"].elements(1, kMostMaps);
+  std::vector<JsonField> names;
+  for (const JsonField& map : maps) {
+    description.maps.push_back(parseMap(map, description.weights, description.differences));
+    names.push_back(map["name"]);
+  }
+  requireUnique(names, "map");
+  description.method_json = document["method"].object().dump();
+  return description;
+}
+
+}  // namespace facezip::package

@@ -1,0 +1,114 @@
+#include "package/weight_atlas.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+#include "package/package_json.hpp"
+
+namespace facezip::package {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int kFileChannels = 4;
+
+std::size_t size(int value) { return static_cast<std::size_t>(value); }
+
+/// Copies weight channels [first, first + count) of one cell row into the atlas row that begins at `tile`, borders
+/// included.
+void copyRowWithBorder(std::span<const std::byte> row, int channels, int first, int count, int border,
+                       std::byte* tile) {
+  const int cells = static_cast<int>(row.size()) / channels;
+  for (int x = -border; x < cells + border; ++x) {
+    const int inside = std::clamp(x, 0, cells - 1);
+    std::memcpy(tile + size(x + border) * size(count), row.data() + size(inside) * size(channels) + size(first),
+                size(count));
+  }
+}
+
+}  // namespace
+
+void arrangeAtlas(PackageWeights& weights, int expressions) {
+  const int width = weights.tile_width + 2 * weights.border;
+  const int height = weights.tile_height + 2 * weights.border;
+  const double square = std::sqrt(static_cast<double>(expressions) * height / width);
+  weights.columns = std::clamp(static_cast<int>(std::ceil(square)), 1, std::max(1, kMaxAtlasSide / width));
+  weights.columns = std::min(weights.columns, expressions);
+  weights.rows = (expressions - 1) / weights.columns + 1;
+  if (width > kMaxAtlasSide || weights.rows > kMaxAtlasSide / height) {
+    throw InputError(
+        {"", "weight atlas", fmt::format("at most {} cells along a side", kMaxAtlasSide),
+         fmt::format("{} weight maps of {} x {} cells", expressions, weights.tile_width, weights.tile_height),
+         "use a larger --weight-scale"});
+  }
+}
+
+image::ImageShape atlasShape(const PackageWeights& weights, int differences, int file) {
+  return {weights.columns * (weights.tile_width + 2 * weights.border),
+          weights.rows * (weights.tile_height + 2 * weights.border),
+          std::min(differences - kFileChannels * file, kFileChannels), image::SampleType::kUint8};
+}
+
+void writeWeightAtlas(const PackageDescription& description, const fs::path& directory,
+                      std::span<const std::byte> codes) {
+  const PackageWeights& weights = description.weights;
+  const int expressions = static_cast<int>(description.expressions.size());
+  const int channels = description.differences;
+  const std::size_t row_bytes = size(weights.tile_width) * size(channels);
+  assert(codes.size() == size(expressions) * size(weights.tile_height) * row_bytes);
+  for (int file = 0; file < static_cast<int>(weights.files.size()); ++file) {
+    const image::ImageShape shape = atlasShape(weights, channels, file);
+    image::ImageWriter writer(directory / weights.files[size(file)], shape);
+    const std::size_t tile_bytes = size(weights.tile_width + 2 * weights.border) * size(shape.channels);
+    std::vector<std::byte> atlas_row(shape.rowBytes());
+    for (int y = 0; y < shape.height; ++y) {
+      const int tile_height = weights.tile_height + 2 * weights.border;
+      const int cell_row = std::clamp(y % tile_height - weights.border, 0, weights.tile_height - 1);
+      std::fill(atlas_row.begin(), atlas_row.end(), std::byte{0});
+      for (int column = 0; column < weights.columns; ++column) {
+        const int n = y / tile_height * weights.columns + column;
+        if (n >= expressions) break;
+        const std::size_t row = size(n) * size(weights.tile_height) + size(cell_row);
+        copyRowWithBorder(codes.subspan(row * row_bytes, row_bytes), channels, kFileChannels * file, shape.channels,
+                          weights.border, atlas_row.data() + size(column) * tile_bytes);
+      }
+      writer.writeRows(atlas_row, 1);
+    }
+    writer.close();
+  }
+}
+
+void readWeightAtlas(const PackageDescription& description, const fs::path& directory, const WeightRowVisitor& visit) {
+  const PackageWeights& weights = description.weights;
+  const int expressions = static_cast<int>(description.expressions.size());
+  for (int file = 0; file < static_cast<int>(weights.files.size()); ++file) {
+    image::ImageReader reader(directory / weights.files[size(file)]);
+    const image::ImageShape shape = atlasShape(weights, description.differences, file);
+    if (reader.shape() != shape) {  // it was checked when the package was opened, so it changed since
+      throw InputError(
+          {reader.path().string(), "", "the image that was there when the package was opened", "another", ""});
+    }
+    const int tile_height = weights.tile_height + 2 * weights.border;
+    const std::size_t tile_bytes = size(weights.tile_width + 2 * weights.border) * size(shape.channels);
+    std::vector<std::byte> rows(size(tile_height) * shape.rowBytes());
+    for (int tile_row = 0; tile_row < weights.rows; ++tile_row) {
+      reader.readRows(tile_row * tile_height, (tile_row + 1) * tile_height, rows);
+      for (int column = 0; column < weights.columns; ++column) {
+        const int n = tile_row * weights.columns + column;
+        if (n >= expressions) break;
+        for (int y = 0; y < weights.tile_height; ++y) {
+          const std::size_t begin = size(y + weights.border) * shape.rowBytes() + size(column) * tile_bytes +
+                                    size(weights.border) * size(shape.channels);
+          visit(n, y, kFileChannels * file, shape.channels,
+                std::span<const std::byte>(rows).subspan(begin, size(weights.tile_width) * size(shape.channels)));
+        }
+      }
+    }
+  }
+}
+
+}  // namespace facezip::package

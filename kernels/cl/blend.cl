@@ -1,0 +1,198 @@
+// blend.cl - one frame of one map from its neutral, its difference textures and the blended weights (FaceZip, Eq. 8)
+//   T(p) = I_0(p) + sum_i D_i(p) w_i(p),   D_ic = scale_ic * (code - zero_ic),   w_i bilinear between cells
+//   Texel centre (x + 0.5) / s - 0.5 in cells, clamped to the grid.
+//
+// A tile is 16 x 8 texels. Its weights need few cells, so interpolation is hoisted: along x once per tile, for the
+// CELL_ROWS rows of cells that the tile touches; along y once per texel row.
+//
+//      cells of the tile       hat functions along x            rows of 16 lanes, lerp along y
+//      o   o   o   o           .  /\  /\  .                     h[0] ----------------
+//      o   o   o   o     ->    . /  \/  \ .       ->            h[1] ----------------   -> w_i of each texel row
+//      o   o   o   o           ./   /\   \.                     h[2] ----------------
+//
+// NDRange   global {tiles * 16 / LANES}, rounded up to the local size; a work-item has LANES columns of one tile
+// Buffers   textures  in   [tile][row 8][TILE_ROW_BYTES]: neutral [channel][16] SAMPLE, then codes [C][channel][16] uchar,
+//                          then padding that keeps the neutral aligned; tiles row-major
+//           weights   in   [cell / 16][C][16]         float  weight_blend.cl's output
+//           encoding  in   [2][C][channels]           float  scale_ic in steps of a sample, then zero_ic
+//           frame     out  [8 * tile rows][16 * tiles_x][channels] SAMPLE  interleaved
+// Defines   CHANNELS 1..4, DIFFERENCES 1..8, SCALE s >= 1, LANES 16 (CPU) or 1 (GPU),
+//           SAMPLE_TYPE 0 uchar, 1 ushort, 2 float; TILE_ROW_BYTES
+// Rounding  integers: half up, clamped to the type; floats: neither, and I_0 is copied where the sum is 0
+
+#ifndef LANES
+#define LANES 16
+#endif
+#ifndef CHANNELS
+#define CHANNELS 3
+#endif
+#ifndef DIFFERENCES
+#define DIFFERENCES 4
+#endif
+#ifndef SCALE
+#define SCALE 8
+#endif
+#ifndef SAMPLE_TYPE
+#define SAMPLE_TYPE 0
+#endif
+#ifndef TILE_ROW_BYTES
+#define TILE_ROW_BYTES (16 * CHANNELS * (1 + DIFFERENCES))
+#endif
+
+#define TILE_WIDTH 16
+#define TILE_ROWS 8
+// Cells touched by 16 columns and by 8 rows of texels, wherever the tile lies.
+#define CELL_COLUMNS ((TILE_WIDTH - 1) / SCALE + 3)
+#define CELL_ROWS ((TILE_ROWS - 1) / SCALE + 3)
+
+#define JOIN_(a, b) a##b
+#define JOIN(a, b) JOIN_(a, b)
+#if LANES == 1
+#define VECTOR(type) type
+#else
+#define VECTOR(type) JOIN(type, 16)
+#endif
+typedef VECTOR(float) floats;
+typedef VECTOR(uchar) codes;
+#define TO_FLOATS JOIN(convert_, VECTOR(float))
+
+#if SAMPLE_TYPE == 0
+#define SAMPLE uchar
+#define SAMPLE_MAX 255.0f
+#elif SAMPLE_TYPE == 1
+#define SAMPLE ushort
+#define SAMPLE_MAX 65535.0f
+#else
+#define SAMPLE float
+#endif
+typedef VECTOR(SAMPLE) samples;
+
+// What a sample becomes before it is narrowed: kept wide so that 8-bit channels can be packed by shifts.
+#if SAMPLE_TYPE == 2
+typedef floats results;
+#else
+typedef VECTOR(uint) results;
+#endif
+
+inline results finish(const floats neutral, const floats sum) {
+#if SAMPLE_TYPE == 2
+  return sum == (floats)(0.0f) ? neutral : neutral + sum;  // -0 and denormals of the neutral survive
+#else
+  // Not convert_*_sat_rte: it costs a third of the whole blend on PoCL.
+  return JOIN(convert_, VECTOR(uint))(clamp(neutral + sum + 0.5f, 0.0f, SAMPLE_MAX));
+#endif
+}
+
+// Writes 16 texels (or one) of CHANNELS interleaved samples. Little-endian devices, as every OpenCL device today is.
+inline void store(global SAMPLE* out, const results* value) {
+#if LANES == 1
+  for (int c = 0; c < CHANNELS; ++c) out[c] = (SAMPLE)value[c];
+#elif CHANNELS == 1 && SAMPLE_TYPE == 2
+  *(global float16*)out = value[0];
+#elif CHANNELS == 1
+  *(global samples*)out = JOIN(convert_, VECTOR(SAMPLE))(value[0]);
+#elif CHANNELS == 2 && SAMPLE_TYPE == 0
+  *(global ushort16*)out = convert_ushort16(value[0] | value[1] << 8);
+#elif CHANNELS == 2 && SAMPLE_TYPE == 1
+  *(global uint16*)out = value[0] | value[1] << 16;
+#elif CHANNELS == 4 && SAMPLE_TYPE == 0
+  *(global uint16*)out = value[0] | value[1] << 8 | value[2] << 16 | value[3] << 24;
+#elif CHANNELS == 3 && SAMPLE_TYPE == 0
+  // Texels as RGB0 words, then the fourth byte of each is squeezed out.
+  const uint16 texels = value[0] | value[1] << 8 | value[2] << 16;
+  const uchar16 a = as_uchar16(texels.s0123);
+  const uchar16 b = as_uchar16(texels.s4567);
+  const uchar16 c = as_uchar16(texels.s89ab);
+  const uchar16 d = as_uchar16(texels.scdef);
+  global uchar16* to = (global uchar16*)out;
+  to[0] = (uchar16)(a.s012, a.s456, a.s89a, a.scde, b.s012, b.s4);
+  to[1] = (uchar16)(b.s56, b.s89a, b.scde, c.s012, c.s456, c.s89);
+  to[2] = (uchar16)(c.sa, c.scde, d.s012, d.s456, d.s89a, d.scde);
+#else
+  SAMPLE lanes[CHANNELS][16];
+  for (int c = 0; c < CHANNELS; ++c) vstore16(JOIN(convert_, VECTOR(SAMPLE))(value[c]), 0, lanes[c]);
+  for (int x = 0; x < 16; ++x) {
+    for (int c = 0; c < CHANNELS; ++c) out[x * CHANNELS + c] = lanes[c][x];
+  }
+#endif
+}
+
+// Rounds down for negative numerators too.
+inline int floor_divide(const int numerator, const int denominator) {
+  return numerator >= 0 ? numerator / denominator : -((denominator - 1 - numerator) / denominator);
+}
+
+// h[r][i]: weights of texture i along the tile's columns, on cell row first_cell_row + r.
+inline void interpolate_columns(global const float* restrict weights, const int x0, const uint lane,
+                                const int first_cell_row, const int cell_columns, const int cell_rows,
+                                floats h[CELL_ROWS][DIFFERENCES]) {
+  // 2 s times the position of texel x0 in cells is the integer 2 x0 + 1 - s: exact for every s and width.
+  const int origin = 2 * x0 + 1 - SCALE;
+  const int first_cell = floor_divide(origin, 2 * SCALE);
+#if LANES == 1
+  const float column = (float)lane;
+#else
+  const float16 column = (float16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+#endif
+  const floats position = (column * 2.0f + (float)(origin - 2 * SCALE * first_cell)) * (1.0f / (2 * SCALE));
+  for (int r = 0; r < CELL_ROWS; ++r) {
+    for (int i = 0; i < DIFFERENCES; ++i) h[r][i] = 0.0f;
+  }
+  for (int j = 0; j < CELL_COLUMNS; ++j) {
+    const floats hat = max(1.0f - fabs(position - (float)j), 0.0f);
+    const int cell_x = clamp(first_cell + j, 0, cell_columns - 1);
+    for (int r = 0; r < CELL_ROWS; ++r) {
+      const ulong cell = (ulong)clamp(first_cell_row + r, 0, cell_rows - 1) * (ulong)cell_columns + (ulong)cell_x;
+      global const float* w = weights + ((cell >> 4) * DIFFERENCES * 16 + (cell & 15));
+      for (int i = 0; i < DIFFERENCES; ++i) h[r][i] = mad(hat, w[16 * i], h[r][i]);
+    }
+  }
+}
+
+kernel void blend(global const uchar* restrict textures, global const float* restrict weights,
+                  global const float* restrict encoding, global SAMPLE* restrict frame, const int tiles_x,
+                  const ulong tile_count, const int first_tile_row, const int cell_columns, const int cell_rows) {
+  const ulong item = get_global_id(0);
+  const ulong tile = item / (16 / LANES);
+  const uint lane = (uint)(item % (16 / LANES));
+  if (tile >= tile_count) return;
+  const int tile_x = (int)(tile % (ulong)tiles_x);
+  const int tile_y = (int)(tile / (ulong)tiles_x);
+
+  const int origin = 2 * TILE_ROWS * (first_tile_row + tile_y) + 1 - SCALE;
+  const int first_cell_row = floor_divide(origin, 2 * SCALE);
+#if TILE_ROWS % SCALE == 0
+  const int phase = SCALE == 1 ? 0 : SCALE + 1;  // the same for every tile, so the compiler resolves the rows below
+#else
+  const int phase = origin - 2 * SCALE * first_cell_row;
+#endif
+  floats h[CELL_ROWS][DIFFERENCES];
+  interpolate_columns(weights, tile_x * TILE_WIDTH, lane, first_cell_row, cell_columns, cell_rows, h);
+
+  global const uchar* texels = textures + tile * (TILE_ROWS * TILE_ROW_BYTES);
+  global SAMPLE* out = frame + ((ulong)tile_y * TILE_ROWS * tiles_x + tile_x) * (TILE_WIDTH * CHANNELS) + lane * CHANNELS;
+#pragma unroll
+  for (int row = 0; row < TILE_ROWS; ++row) {
+    const int position = phase + 2 * row;
+    const int above = position / (2 * SCALE);
+    const float fraction = (float)(position % (2 * SCALE)) * (1.0f / (2 * SCALE));
+    floats w[DIFFERENCES];
+    for (int i = 0; i < DIFFERENCES; ++i) w[i] = mad(h[above + 1][i] - h[above][i], fraction, h[above][i]);
+
+    global const uchar* difference = texels + CHANNELS * 16 * sizeof(SAMPLE) + lane;
+    results value[CHANNELS];
+    for (int c = 0; c < CHANNELS; ++c) {
+      floats sum = 0.0f;
+      for (int i = 0; i < DIFFERENCES; ++i) {
+        const int plane = i * CHANNELS + c;
+        const floats code = TO_FLOATS(*(global const codes*)(difference + 16 * plane));
+        sum = mad((code - encoding[DIFFERENCES * CHANNELS + plane]) * encoding[plane], w[i], sum);
+      }
+      const samples neutral = *(global const samples*)((global const SAMPLE*)texels + (16 * c + lane));
+      value[c] = finish(TO_FLOATS(neutral), sum);
+    }
+    store(out, value);
+    texels += TILE_ROW_BYTES;
+    out += (ulong)tiles_x * (TILE_WIDTH * CHANNELS);
+  }
+}

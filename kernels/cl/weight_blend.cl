@@ -1,0 +1,53 @@
+// weight_blend.cl - the weight maps of all expressions, blended with the blendshape weights (FaceZip, Eq. 8, bracket)
+//   w_i(q) = sum over active n of beta_n W_n[i](q),   W = scale_i * code + offset_i
+//          = scale_i * sum beta_n code + offset_i * sum beta_n
+// NDRange   global {blocks * 16 / LANES}, rounded up to the local size; a work-item has LANES cells of one block
+// Buffers   codes     in   [blocks][N][C][16] uchar  16 neighbouring cells of the row-major cell grid are a block
+//           active    in   [count]            int    expressions whose beta is not 0, rising
+//           beta      in   [count]            float  their weights
+//           encoding  in   [2][C]             float  scale_i, then offset_i * sum beta_n
+//           weights   out  [blocks][C][16]    float
+// Defines   LANES        16 on CPUs (one AVX-512 register), 1 on GPUs (neighbouring work-items read neighbouring bytes)
+//           DIFFERENCES  C, 1..8
+// Sums      in rising n: same bits whichever range of blocks is asked for
+
+#ifndef LANES
+#define LANES 16
+#endif
+#ifndef DIFFERENCES
+#define DIFFERENCES 4
+#endif
+
+#if LANES == 1
+typedef float floats;
+typedef uchar bytes;
+#define TO_FLOATS convert_float
+#else
+typedef float16 floats;
+typedef uchar16 bytes;
+#define TO_FLOATS convert_float16
+#endif
+
+kernel void weight_blend(global const uchar* restrict codes, global const int* restrict active,
+                         global const float* restrict beta, global const float* restrict encoding,
+                         global float* restrict weights, const int count, const int expressions, const ulong first_block,
+                         const ulong block_count) {
+  const ulong item = get_global_id(0);
+  const ulong block = first_block + item / (16 / LANES);
+  const uint lane = (uint)(item % (16 / LANES));
+  if (block >= first_block + block_count) return;
+
+  floats sum[DIFFERENCES];
+  for (int i = 0; i < DIFFERENCES; ++i) sum[i] = 0.0f;
+  for (int a = 0; a < count; ++a) {
+    const float weight = beta[a];
+    global const uchar* code = codes + ((block * (ulong)expressions + (ulong)active[a]) * DIFFERENCES * 16 + lane);
+    for (int i = 0; i < DIFFERENCES; ++i) {
+      sum[i] = mad(TO_FLOATS(*(global const bytes*)(code + 16 * i)), weight, sum[i]);
+    }
+  }
+  global float* out = weights + (block * DIFFERENCES * 16 + lane);
+  for (int i = 0; i < DIFFERENCES; ++i) {
+    *(global floats*)(out + 16 * i) = mad(sum[i], encoding[i], encoding[DIFFERENCES + i]);
+  }
+}

@@ -1,0 +1,228 @@
+#include "blend/blend.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <random>
+#include <vector>
+
+#include "reference/blend.hpp"
+#include "test_device.hpp"
+
+namespace facezip {
+namespace {
+using device::KernelVariant;
+using image::SampleType;
+
+struct BlendCase {
+  int width, height, channels, differences, weight_scale;
+  SampleType type;
+};
+
+void PrintTo(const BlendCase& c, std::ostream* out) {
+  *out << c.width << "x" << c.height << " channels " << c.channels << " C " << c.differences << " s " << c.weight_scale
+       << " " << image::sampleTypeName(c.type);
+}
+
+/// Random textures and weights, for the kernel and for the reference.
+struct Scene {
+  explicit Scene(const BlendCase& c) : size(c) {
+    columns = (c.width + c.weight_scale - 1) / c.weight_scale;
+    rows = (c.height + c.weight_scale - 1) / c.weight_scale;
+    const std::size_t samples = static_cast<std::size_t>(c.width * c.height * c.channels);
+    textures = {c.width, c.height, c.channels, c.differences, c.weight_scale, fullScale(), {}, {}, {}, {}};
+    neutral.resize(samples * image::sampleBytes(c.type));
+    for (std::size_t s = 0; s < samples; ++s) textures.neutral.push_back(setNeutral(s));
+    for (int i = 0; i < c.differences; ++i) addDifference(i, samples);
+    for (int q = 0; q < columns * rows * c.differences; ++q)
+      weights.push_back(static_cast<float>(random() % 2001) * 1e-3f - 1.0f);
+  }
+
+  double fullScale() const {
+    return size.type == SampleType::kUint8 ? 255 : size.type == SampleType::kUint16 ? 65535 : 1;
+  }
+
+  double setNeutral(std::size_t sample) {
+    if (size.type == SampleType::kUint8) {
+      const auto value = static_cast<std::uint8_t>(random());
+      std::memcpy(neutral.data() + sample, &value, 1);
+      return value;
+    }
+    if (size.type == SampleType::kUint16) {
+      const auto value = static_cast<std::uint16_t>(random());
+      std::memcpy(neutral.data() + sample * 2, &value, 2);
+      return value;
+    }
+    const float value = sample % 5 == 0 ? -0.0f : static_cast<float>(random() % 2000) * 1e-3f - 0.5f;
+    std::memcpy(neutral.data() + sample * 4, &value, 4);
+    return static_cast<double>(value);
+  }
+
+  void addDifference(int i, std::size_t samples) {
+    textures.codes.emplace_back();
+    for (std::size_t s = 0; s < samples; ++s) textures.codes.back().push_back(static_cast<unsigned char>(random()));
+    textures.scale.emplace_back();
+    textures.offset.emplace_back();
+    for (int c = 0; c < size.channels; ++c) {
+      const int zero_code = 128 - 15 * i + c;
+      textures.scale.back().push_back(0.5 + 0.11 * i + 0.07 * c);
+      textures.offset.back().push_back(-textures.scale.back().back() * zero_code);
+      scale.push_back(static_cast<float>(textures.scale.back().back() * fullScale() / 255));
+      zero.push_back(static_cast<float>(zero_code));
+    }
+  }
+
+  blend::TextureShape shape() const {
+    return {size.width, size.channels, size.differences, size.type, size.weight_scale, scale, zero};
+  }
+
+  cl::Buffer uploadWeights(float factor = 1.0f) const {
+    const std::size_t channels = static_cast<std::size_t>(size.differences);
+    const std::size_t cells = weights.size() / channels;
+    std::vector<float> blocks((cells + 15) / 16 * 16 * channels, 0.0f);
+    for (std::size_t q = 0; q < weights.size(); ++q) {
+      const std::size_t cell = q / channels;
+      blocks[(cell / 16 * channels + q % channels) * 16 + cell % 16] = factor * weights[q];
+    }
+    return test::testDevice().upload(blocks, "weights");
+  }
+
+  blend::TextureRows load(int begin, int end, KernelVariant variant) const {
+    blend::TextureRows textures_on_device(test::testDevice(), shape(), end - begin, columns, rows, variant);
+    textures_on_device.setRows(begin, end);
+    const std::size_t row_samples = static_cast<std::size_t>(size.width * size.channels);
+    const std::size_t first = static_cast<std::size_t>(begin) * row_samples;
+    const std::size_t count = static_cast<std::size_t>(end - begin) * row_samples;
+    std::vector<std::span<const std::byte>> differences;
+    for (const auto& codes : textures.codes)
+      differences.push_back(std::as_bytes(std::span(codes)).subspan(first, count));
+    const std::size_t bytes = image::sampleBytes(size.type);
+    textures_on_device.load(begin, end - begin, std::span(neutral).subspan(first * bytes, count * bytes), differences);
+    return textures_on_device;
+  }
+
+  std::vector<std::byte> blendRows(int begin, int end, float factor = 1.0f,
+                                   KernelVariant variant = KernelVariant::kAuto) const {
+    blend::TextureRows on_device = load(begin, end, variant);
+    const std::size_t bytes =
+        static_cast<std::size_t>((end - begin) * size.width * size.channels) * image::sampleBytes(size.type);
+    constexpr std::size_t kCanary = 64;
+    std::vector<std::byte> frame(bytes + kCanary, std::byte{0xa5});
+    on_device.blend(uploadWeights(factor), std::span(frame).first(bytes));
+    for (std::size_t b = bytes; b < frame.size(); ++b) EXPECT_EQ(frame[b], std::byte{0xa5}) << "written past the frame";
+    frame.resize(bytes);
+    return frame;
+  }
+
+  double sampleAt(const std::vector<std::byte>& frame, std::size_t sample) const {
+    if (size.type == SampleType::kUint8) return static_cast<double>(frame[sample]);
+    if (size.type == SampleType::kUint16) {
+      std::uint16_t value;
+      std::memcpy(&value, frame.data() + 2 * sample, 2);
+      return value;
+    }
+    float value;
+    std::memcpy(&value, frame.data() + 4 * sample, 4);
+    return static_cast<double>(value);
+  }
+
+  BlendCase size;
+  std::mt19937_64 random{11};
+  int columns, rows;
+  std::vector<std::byte> neutral;
+  std::vector<float> scale, zero, weights;
+  reference::Textures textures;
+};
+
+class Blend : public testing::TestWithParam<std::tuple<BlendCase, KernelVariant>> {
+ protected:
+  void SetUp() override {
+    if (test::smallSizesOnly() && std::get<0>(GetParam()).width > 100) GTEST_SKIP() << "large for a simulator";
+  }
+};
+
+/// What rounding half up may give where float arithmetic puts the value within `slack` of `exact`.
+bool roundsTo(double exact, double full_scale, double slack, double got) {
+  const double low = std::clamp(std::floor(exact - slack + 0.5), 0.0, full_scale);
+  const double high = std::clamp(std::floor(exact + slack + 0.5), 0.0, full_scale);
+  return got >= low && got <= high;
+}
+
+TEST_P(Blend, AgreesWithTheReference) {
+  const auto& [size, variant] = GetParam();
+  const Scene scene(size);
+  const std::vector<double> weights(scene.weights.begin(), scene.weights.end());
+  const std::vector<double> expected = reference::blendFrame(scene.textures, weights, scene.columns, scene.rows);
+  const std::vector<std::byte> frame = scene.blendRows(0, size.height, 1.0f, variant);
+  // Terms reach 1.5 of full scale each; float arithmetic loses a few units of 2^-24 in each.
+  const double slack = 3e-6 * scene.textures.full_scale;
+  for (std::size_t s = 0; s < expected.size(); ++s) {
+    const double got = scene.sampleAt(frame, s);
+    if (size.type == SampleType::kFloat32) {
+      ASSERT_NEAR(got, expected[s], slack) << s;
+    } else {
+      ASSERT_TRUE(roundsTo(expected[s], scene.textures.full_scale, slack, got))
+          << s << ": " << expected[s] << " gave " << got;
+    }
+  }
+}
+
+TEST_P(Blend, ZeroWeightsGiveTheNeutralBitForBit) {
+  const auto& [size, variant] = GetParam();
+  const Scene scene(size);
+  EXPECT_EQ(scene.blendRows(0, size.height, 0.0f, variant), scene.neutral);
+}
+
+TEST_P(Blend, BandsHaveTheBitsOfTheWhole) {
+  const auto& [size, variant] = GetParam();
+  const Scene scene(size);
+  const std::vector<std::byte> whole = scene.blendRows(0, size.height, 1.0f, variant);
+  std::vector<std::byte> bands;
+  for (int begin = 0; begin < size.height; begin += 24) {
+    const std::vector<std::byte> band = scene.blendRows(begin, std::min(begin + 24, size.height), 1.0f, variant);
+    bands.insert(bands.end(), band.begin(), band.end());
+  }
+  EXPECT_EQ(bands, whole);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Sizes, Blend,
+    testing::Combine(
+        testing::Values(
+            BlendCase{93, 61, 3, 4, 8, SampleType::kUint8}, BlendCase{93, 61, 4, 4, 4, SampleType::kUint8},
+            BlendCase{93, 61, 1, 4, 16, SampleType::kUint8}, BlendCase{64, 48, 3, 4, 8, SampleType::kUint8},
+            BlendCase{64, 48, 4, 8, 8, SampleType::kUint8}, BlendCase{1, 1, 3, 4, 8, SampleType::kUint8},
+            BlendCase{17, 9, 2, 1, 1, SampleType::kUint8}, BlendCase{64, 16, 2, 3, 2, SampleType::kUint8},
+            BlendCase{33, 40, 3, 5, 5, SampleType::kUint8}, BlendCase{50, 50, 3, 4, 100, SampleType::kUint8},
+            BlendCase{93, 61, 3, 4, 8, SampleType::kUint16}, BlendCase{32, 32, 2, 4, 8, SampleType::kUint16},
+            BlendCase{93, 61, 1, 1, 3, SampleType::kUint16}, BlendCase{32, 16, 4, 4, 24, SampleType::kUint16},
+            BlendCase{93, 61, 3, 4, 8, SampleType::kFloat32}, BlendCase{32, 24, 1, 1, 8, SampleType::kFloat32},
+            BlendCase{93, 61, 4, 2, 6, SampleType::kFloat32}, BlendCase{512, 300, 3, 4, 8, SampleType::kUint8}),
+        testing::Values(KernelVariant::kCpu, KernelVariant::kGpu)));
+
+TEST(Blend, VariantsAgreeToTheRounding) {
+  const Scene scene({64, 48, 3, 4, 8, SampleType::kFloat32});
+  const std::vector<std::byte> cpu = scene.blendRows(0, 48, 1.0f, KernelVariant::kCpu);
+  const std::vector<std::byte> gpu = scene.blendRows(0, 48, 1.0f, KernelVariant::kGpu);
+  for (std::size_t s = 0; s < 64 * 48 * 3; ++s) ASSERT_NEAR(scene.sampleAt(cpu, s), scene.sampleAt(gpu, s), 3e-6);
+}
+
+TEST(CellRowsOf, CoversWhatTheRowsInterpolateBetween) {
+  for (const int s : {1, 2, 3, 7, 8, 16, 100}) {
+    const int height = 173, cells = (height - 1) / s + 1;
+    for (int begin = 0; begin < height; begin += 8) {
+      const int end = std::min(begin + 8, height);
+      const auto [first, last] = blend::cellRowsOf(begin, end, s, cells);
+      const double top = std::clamp((begin + 0.5) / s - 0.5, 0.0, cells - 1.0);
+      const double bottom = std::clamp((end - 0.5) / s - 0.5, 0.0, cells - 1.0);
+      EXPECT_LE(first, static_cast<int>(std::floor(top)));
+      EXPECT_GT(last, static_cast<int>(std::ceil(bottom)));
+      EXPECT_GE(first, 0);
+      EXPECT_LE(last, cells);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace facezip

@@ -7,11 +7,9 @@
 #include <vector>
 
 #include "facezip/error.hpp"
+#include "facezip/sample_type.hpp"
 
 namespace facezip {
-
-/// Type of the samples of a map's neutral texture, and so of every frame that is blended from it.
-enum class SampleType { kUint8, kUint16, kFloat32 };
 
 /// One difference texture D_i of one map: an 8-bit image whose codes decode to D_i = scale * code + offset.
 struct PackageDifference {
@@ -26,7 +24,7 @@ struct PackageMap {
   int width = 0;     ///< texels
   int height = 0;    ///< texels; row 0 is v = 1
   int channels = 0;  ///< 1 to 4, interleaved
-  SampleType sample_type = SampleType::kUint8;
+  SampleType sample_type = SampleType::kUint8;  ///< of the neutral, and so of every frame that is blended from it
   std::string colour_space;                    ///< "sRGB", "linear" or "" (not said)
   int weight_scale = 8;                        ///< s: texels to a cell of the weight maps, along each axis
   double metric_weight = 1.0;                  ///< how much the map counted in the compression

@@ -8,10 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "facezip/sample_type.hpp"
+
 namespace facezip::image {
 
-/// How samples are kept in memory. Other types on disk are widened: half to float, 32-bit integers to float.
-enum class SampleType { kUint8, kUint16, kFloat32 };
+using facezip::SampleType;
 
 constexpr std::size_t sampleBytes(SampleType type) {
   return type == SampleType::kUint8 ? 1 : type == SampleType::kUint16 ? 2 : 4;

@@ -31,13 +31,11 @@ std::string readDescription(const fs::path& file) {
   return text;
 }
 
-std::size_t sampleBytes(SampleType type) { return image::sampleBytes(package::imageSampleType(type)); }
-
 }  // namespace
 
 std::size_t PackageMap::frameBytes() const {
   return static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * static_cast<std::size_t>(channels) *
-         sampleBytes(sample_type);
+         image::sampleBytes(sample_type);
 }
 
 Package Package::open(const fs::path& directory) {
@@ -64,7 +62,7 @@ int Package::mapIndex(const std::string& map_name) const {
 std::uint64_t Package::bytesInMemory() const {
   std::uint64_t bytes = 0;
   for (const PackageMap& map : maps()) {
-    const std::uint64_t samples = map.frameBytes() / sampleBytes(map.sample_type);
+    const std::uint64_t samples = map.frameBytes() / image::sampleBytes(map.sample_type);
     bytes += map.frameBytes() + samples * static_cast<std::uint64_t>(differences());
   }
   const std::uint64_t cells =

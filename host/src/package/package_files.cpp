@@ -50,14 +50,8 @@ std::uint64_t checkImage(const fs::path& file, const image::ImageShape& shape) {
 
 }  // namespace
 
-image::SampleType imageSampleType(SampleType type) {
-  return type == SampleType::kUint8    ? image::SampleType::kUint8
-         : type == SampleType::kUint16 ? image::SampleType::kUint16
-                                       : image::SampleType::kFloat32;
-}
-
 image::ImageShape neutralShape(const PackageMap& map) {
-  return {map.width, map.height, map.channels, imageSampleType(map.sample_type)};
+  return {map.width, map.height, map.channels, map.sample_type};
 }
 
 image::ImageShape differenceShape(const PackageMap& map) {

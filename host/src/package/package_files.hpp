@@ -9,9 +9,6 @@
 
 namespace facezip::package {
 
-/// The type that the image layer uses for a map's samples.
-image::SampleType imageSampleType(SampleType type);
-
 image::ImageShape neutralShape(const PackageMap& map);
 image::ImageShape differenceShape(const PackageMap& map);
 

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <utility>
 
+#include "facezip/version.hpp"
 #include "image/image_file.hpp"
 #include "io/staged_directory.hpp"
 #include "package/package_files.hpp"

@@ -1,8 +1,13 @@
+<<<<<<< HEAD
 // tolerances.hpp - how far a result may lie from its reference, and why. One place, so that a loosened bound is seen.
+=======
+// tolerances.hpp - how far results may lie from their references, and why.
+>>>>>>> search
 #pragma once
 
 namespace facezip::test {
 
+<<<<<<< HEAD
 // 16-bit and float differences: one rounding of the subtraction and one of the scaling, each half a unit of 2^-24,
 // relative to the larger sample (255 full scale). 8-bit differences are exact and are compared so.
 inline constexpr double kDifferenceRelative = 2e-7;
@@ -19,5 +24,33 @@ inline constexpr double kDifferenceTextureRelative = 2e-6;
 // Encoded bytes: exact, but for values this close to half way between two bytes, where the rounding of
 // (value - offset) / scale in float32 (255 * 6e-8, and as much again from the reference's own scale) decides.
 inline constexpr double kEncodeTie = 1e-3;
+=======
+// --- search on Gram matrices -----------------------------------------------------------------------------------------
+
+/// Seam costs, as a share of the largest squared length of a centred fragment of the pair. e^T H e has entries of H
+/// below 1 and |e|_1 <= 2, so rounding H (2^-24) moves it by 4 * 2^-24; the sums over up to 129 rows and 129 columns
+/// add about sqrt(129) * 2^-24 each. 1e-5 is five times their sum.
+inline constexpr double kSeamCost = 1e-5;
+
+/// Squared distances from a fragment to centres, as a share of the largest squared length of a centred fragment: the
+/// same sums. Two centres that differ by less may change places under rounding.
+inline constexpr double kCentreDistance = 1e-5;
+
+/// Runs of k-means whose labels may differ from the reference in double, as a share of all. A run goes another way
+/// where a random draw falls within 1e-6 of the border between two fragments, or a fragment within 1e-6 of the middle
+/// between two centres; with tens of such decisions a run, fewer than one run in a thousand.
+inline constexpr double kDivergedRuns = 2e-3;
+
+/// Sums of doubles over the same values in another order, relative.
+inline constexpr double kDoubleSum = 1e-9;
+
+/// Weight maps: 255 W is summed in float to about 1e-4, so the byte may fall on the other side of a half only where
+/// 255 W + 1/2 lies this near to an integer.
+inline constexpr double kWeightRounding = 1e-3;
+
+/// Reconstruction from float coefficients and masks, relative to the largest difference: a handful of products of
+/// 2^-24.
+inline constexpr double kExactReconstruction = 1e-6;
+>>>>>>> search
 
 }  // namespace facezip::test

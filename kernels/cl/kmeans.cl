@@ -1,4 +1,4 @@
-// kmeans.cl - k-means over the fragments of every mask, on Gram matrices alone (FaceZip 3.1, "Clustering"; fragments Eq. 2)
+// kmeans.cl - k-means over the fragments (Eq. 2) of every mask, on Gram matrices alone (FaceZip 3.1, "Clustering")
 //   |f_n - c_S|^2 = H[n,n] - 2/|S| sum_{m in S} H[n,m] + 1/|S|^2 sum_{m,m' in S} H[m,m']
 // A run is one restart of one mask: k-means++ seeds (Arthur and Vassilvitskii 2007), then Lloyd's update and assignment
 // until the labels stand still. Runs do not meet, so a run is a work-item; its lanes are 16 fragments.
@@ -10,7 +10,7 @@
 //          iterations  out  [runs] int                     Lloyd iterations until the labels stood still, or -1
 // Defines  CLUSTERS    C, 1 to 8 (4)
 //          BLOCKS      blocks of 16 fragments, PADDED = 16 * BLOCKS (2)
-// Private  (C + 3) * PADDED floats: sums, distances and labels of a run
+// Private  (C + 3) * PADDED words: sums, distances, labels and labels before
 // Ties     lowest cluster, lowest fragment
 // Empty    a cluster that loses all its fragments takes the one farthest from its centre; it stays empty where there is
 //          none but coincident fragments, so with N < C the last clusters are empty
@@ -156,25 +156,24 @@ kernel void kmeans(global const float* restrict grams, global uchar* restrict la
   const ulong run = get_global_id(0);
   if (run >= (ulong)masks * restarts) return;
   const int mask = (int)(run / restarts);
+  // Not run % restarts: / and % together compile to a `freeze`, which Oclgrind does not know.
+  const int restart = (int)(run - (ulong)mask * restarts);
   global const float* gram = grams + (ulong)mask * PADDED * PADDED;
 
   float sums[CLUSTERS * PADDED], size[CLUSTERS], square[CLUSTERS], nearest[PADDED];
-  int label[PADDED];
-  global uchar* current = labels + run * fragments;
-  seed_clusters(gram, fragments, seed, mask, (int)(run % restarts), nearest, label);
-  for (int n = 0; n < fragments; ++n) current[n] = (uchar)label[n];
+  int label[PADDED], previous[PADDED];
+  seed_clusters(gram, fragments, seed, mask, restart, nearest, label);
 
   int done = -1;
   for (int i = 1; i <= max_iterations && done < 0; ++i) {
+    for (int n = 0; n < fragments; ++n) previous[n] = label[n];
     update_clusters(gram, fragments, label, sums, size, square);
     assign_fragments(sums, size, square, nearest, label);
     refill_empty_clusters(gram, fragments, square, nearest, label);
     int changed = 0;
-    for (int n = 0; n < fragments; ++n) {
-      changed |= current[n] != (uchar)label[n];
-      current[n] = (uchar)label[n];
-    }
-    if (!changed) done = i;
+    for (int n = 0; n < fragments; ++n) changed += previous[n] != label[n];
+    if (changed == 0) done = i;
   }
+  for (int n = 0; n < fragments; ++n) labels[run * fragments + n] = (uchar)label[n];
   iterations[run] = done;
 }

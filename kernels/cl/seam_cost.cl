@@ -4,8 +4,8 @@
 // e sums to zero, so H may be centred, and e is formed before anything is multiplied: equal clusters cost exactly 0.
 //
 // NDRange  global {roundUp(pairs * C * C, WGS)}, local {WGS}: work-item = one entry, lanes = 16 fragments
-// Buffers  gram        in   [pairs][PADDED][PADDED] float  H of the pair's weights (M_k M_l)^2, with the origin as row N,
-//                                                          centred and scaled to a largest diagonal of 1; zero where padded
+// Buffers  gram        in   [pairs][PADDED][PADDED] float  H of the pair's weights (M_k M_l)^2, centred, scaled to a
+//                                                          diagonal of at most 1; the origin is row N; zero padding
 //          pair_masks  in   [pairs][2] int                 k, l
 //          labels      in   [masks][fragments] uchar       in [0, CLUSTERS)
 //          tables      out  [pairs][C][C] float            >= 0, in units of the scaled H
@@ -32,9 +32,11 @@ kernel void seam_cost(global const float* restrict grams, global const int* rest
                       global const uchar* restrict labels, global float* restrict tables, int fragments, int pairs) {
   const ulong entry = get_global_id(0);
   if (entry >= (ulong)pairs * CLUSTERS * CLUSTERS) return;
-  const ulong pair = entry / (CLUSTERS * CLUSTERS);
-  const int a = (int)(entry / CLUSTERS % CLUSTERS);
-  const int b = (int)(entry % CLUSTERS);
+  // Not with %: / and % together compile to a `freeze`, which Oclgrind does not know.
+  const ulong row_of_tables = entry / CLUSTERS;
+  const ulong pair = row_of_tables / CLUSTERS;
+  const int a = (int)(row_of_tables - pair * CLUSTERS);
+  const int b = (int)(entry - row_of_tables * CLUSTERS);
   global const float* gram = grams + pair * PADDED * PADDED;
   global const uchar* label_k = labels + (ulong)pair_masks[2 * pair] * fragments;
   global const uchar* label_l = labels + (ulong)pair_masks[2 * pair + 1] * fragments;
@@ -55,10 +57,8 @@ kernel void seam_cost(global const float* restrict grams, global const int* rest
     global const float* row = gram + (ulong)n * PADDED;
     for (int i = 0; i < BLOCKS; ++i) product[i] += e[n] * vload16(i, row);
   }
-  float16 terms = (float16)(0.0f);
-  for (int i = 0; i < BLOCKS; ++i) terms += vload16(i, e) * product[i];
-  const float8 t8 = terms.lo + terms.hi;
-  const float4 t4 = t8.lo + t8.hi;
-  const float2 t2 = t4.lo + t4.hi;
-  tables[entry] = max(t2.x + t2.y, 0.0f);  // a squared length; rounding may leave it a little below zero
+  float cost = 0.0f;  // e^T H e
+  for (int i = 0; i < BLOCKS; ++i) vstore16(vload16(i, e) * product[i], i, e);
+  for (int n = 0; n <= fragments; ++n) cost += e[n];
+  tables[entry] = max(cost, 0.0f);  // a squared length; rounding may leave it a little below zero
 }

@@ -1,8 +1,8 @@
 // weight_map.cl - weights of the difference textures, for every expression and cell of the weight grid (FaceZip Eq. 6)
 //   W_in(cell) = sum over masks k that give texture i to expression n of M_k(cell)
 //
-// NDRange  global {roundUp(cells, WGS), blocks}, local {WGS, 1}: work-item = one cell and 16 expressions, which are its lanes;
-//          neighbouring work-items write neighbouring bytes
+// NDRange  global {roundUp(cells, WGS), blocks}, local {WGS, 1}: work-item = one cell and 16 expressions, its
+//          lanes; neighbouring work-items write neighbouring bytes
 // Buffers  cell_begin    in   [cells + 1] int             entries of a cell, counted from `first_entry`
 //          mask_index    in   [entries] int               k
 //          mask_weights  in   [entries] float             M_k(cell), 0..1; sums to 1 over a cell

@@ -20,17 +20,15 @@ struct KmeansOptions {
 };
 
 /// Which cluster every expression belongs to under every mask.
-/// Clusters are numbered as k-means++ drew their seeds in the winning run, that is at random: taken as they are they
-/// make the paper's "no permutation" baseline. A mask with fewer than C distinct fragments leaves its last clusters
-/// empty.
+/// Clusters are numbered as k-means++ drew their seeds in the winning run, that is at random: as they are, they make
+/// the paper's "no permutation" baseline. A mask with fewer than C distinct fragments leaves its last clusters empty.
 struct Clustering {
-  int masks = 0;            ///< K
-  int expressions = 0;      ///< N
-  int clusters = 0;         ///< C
-  std::vector<int> labels;  ///< K x N, each in [0, C)
-  std::vector<double>
-      inertia;  ///< K: sum over n of |f_n - its centre|^2, in units of (1/255)^2, in double from the Gram matrix
-  bool converged = true;  ///< false when a winning run still changed labels in its last iteration
+  int masks = 0;                ///< K
+  int expressions = 0;          ///< N
+  int clusters = 0;             ///< C
+  std::vector<int> labels;      ///< K x N, each in [0, C)
+  std::vector<double> inertia;  ///< K: sum over n of |f_n - its centre|^2, (1/255)^2 units, summed in double
+  bool converged = true;        ///< false when a winning run still changed labels in its last iteration
 
   int label(int k, int n) const {
     return labels[static_cast<std::size_t>(k) * static_cast<std::size_t>(expressions) + static_cast<std::size_t>(n)];
@@ -38,8 +36,9 @@ struct Clustering {
 };
 
 /// Clusters the N fragments of each of the K masks: `restarts` runs of k-means++ and Lloyd per mask, all on the device
-/// in one launch, the best by inertia in double. The same input, options and device give the same result. grams   slots
-/// 1 .. K are read; finite Throws InputError for options outside their ranges; DeviceError.
+/// in one launch, the best by inertia in double. The same input, options and device give the same result.
+/// grams   slots 1 .. K are read; finite
+/// Throws InputError for options outside their ranges; DeviceError.
 Clustering clusterFragments(device::DeviceContext& context, const GramMatrices& grams,
                             const KmeansOptions& options = {});
 
@@ -48,9 +47,8 @@ struct KmeansRuns {
   int masks = 0;
   int restarts = 0;
   int expressions = 0;
-  std::vector<std::uint8_t> labels;  ///< K x restarts x N
-  std::vector<std::int32_t>
-      iterations;  ///< K x restarts: Lloyd iterations until the labels stood still; -1 if they did not
+  std::vector<std::uint8_t> labels;      ///< K x restarts x N
+  std::vector<std::int32_t> iterations;  ///< K x restarts: Lloyd iterations until labels stood still, or -1
 };
 
 /// The device part of clusterFragments(): every run of every mask.

@@ -24,16 +24,14 @@ struct Permutation {
 };
 
 struct PermutationSearchOptions {
-  int restarts = 100;  ///< random starts, 1 or more; the paper takes 100
-  int max_sweeps =
-      100;  ///< visits to all masks in one restart at most, 1 or more; the paper takes 10, enough in nearly all
+  int restarts = 100;    ///< random starts, 1 or more; the paper takes 100
+  int max_sweeps = 100;  ///< visits to all masks in one restart at most, 1 or more; the paper takes 10
   std::uint64_t seed = 1;
 };
 
 struct PermutationSearch {
   Permutation best;  ///< lowest cost; ties go to the lowest restart
-  /// Cost of every restart: entry 0 of the random start, entry s after sweep s; never rising. For the convergence
-  /// figure.
+  /// Cost of every restart: entry 0 of the random start, entry s after sweep s; never rising. For a convergence plot.
   std::vector<std::vector<double>> sweep_costs;
   int unconverged_restarts = 0;  ///< restarts that still improved in their last sweep
 
@@ -44,8 +42,9 @@ struct PermutationSearch {
 };
 
 /// Coordinate descent from random starts: masks are visited in rising order, each takes the best of all C! permutations
-/// while the others stand, until a sweep changes nothing. Restarts run in parallel; the result depends on `options`
-/// alone. Throws InputError for options outside their ranges.
+/// while the others stand, until a sweep changes nothing. Restarts run in parallel; the result depends on `tables`
+/// and `options` alone.
+/// Throws InputError for options outside their ranges.
 PermutationSearch searchPermutation(const SeamTables& tables, const PermutationSearchOptions& options = {});
 
 /// Clusters in the order they came in, sigma(i, k) = i, with its cost: the paper's baseline without permutation.

@@ -12,10 +12,6 @@
 namespace facezip::compress {
 namespace {
 
-// Device and staging memory of a batch of pairs. A capture of the paper's size (475 pairs, N = 20) is one batch of 2
-// MB; 2000 pairs at N = 128 would be 166 MB, more than a small device has to give.
-constexpr std::size_t kBatchBytes = std::size_t{32} << 20;
-
 /// Centred matrices of pairs first .. first + count - 1, and what to multiply their tables with.
 struct PackedPairs {
   std::vector<float> grams;
@@ -58,7 +54,8 @@ cl::Event launchSeamCost(device::DeviceContext& context, const SeamCostLaunch& l
   return context.run(kernel, cl::NDRange(device::roundUp(entries, local)), cl::NDRange(local));
 }
 
-SeamTables computeSeamTables(device::DeviceContext& context, const GramMatrices& grams, const Clustering& clustering) {
+SeamTables computeSeamTables(device::DeviceContext& context, const GramMatrices& grams, const Clustering& clustering,
+                             std::size_t batch_bytes) {
   const int pairs = static_cast<int>(grams.slots.pairs.size());
   const std::size_t table =
       static_cast<std::size_t>(clustering.clusters) * static_cast<std::size_t>(clustering.clusters);
@@ -68,7 +65,7 @@ SeamTables computeSeamTables(device::DeviceContext& context, const GramMatrices&
 
   const int padded = paddedFragments(grams.expressions, OriginRow::kWith);
   const std::size_t pair_bytes = static_cast<std::size_t>(padded) * static_cast<std::size_t>(padded) * sizeof(float);
-  const int batch = static_cast<int>(std::clamp<std::size_t>(kBatchBytes / pair_bytes, 1, 1 << 20));
+  const int batch = static_cast<int>(std::clamp<std::size_t>(batch_bytes / pair_bytes, 1, 1 << 20));
   const cl::Buffer labels =
       context.upload(std::vector<std::uint8_t>(clustering.labels.begin(), clustering.labels.end()), "cluster labels");
 

@@ -10,6 +10,10 @@
 
 namespace facezip::compress {
 
+/// A capture of the paper's size (475 pairs, N = 20) is one batch of 2 MB; 2000 pairs at N = 128 would be 166 MB, more
+/// than a small device has to give.
+inline constexpr std::size_t kSeamBatchBytes = std::size_t{32} << 20;
+
 /// One C x C table per pair of overlapping masks.
 struct SeamTables {
   int masks = 0;                ///< K
@@ -27,9 +31,12 @@ struct SeamTables {
 };
 
 /// Fills the tables from the pairs' Gram matrices. Errors are below 1e-5 of the largest squared distance of two
-/// fragments under the same weights (tests/tolerances.hpp argues it); equal clusters cost exactly 0. grams        as
-/// `clustering` was made from Throws DeviceError.
-SeamTables computeSeamTables(device::DeviceContext& context, const GramMatrices& grams, const Clustering& clustering);
+/// fragments under the same weights (tests/tolerances.hpp argues it); equal clusters cost exactly 0.
+/// grams        as `clustering` was made from
+/// batch_bytes  device memory for the matrices of the pairs that one launch takes; at least one pair's are held
+/// Throws DeviceError.
+SeamTables computeSeamTables(device::DeviceContext& context, const GramMatrices& grams, const Clustering& clustering,
+                             std::size_t batch_bytes = kSeamBatchBytes);
 
 /// Sizes and device buffers of one launch of kernels/cl/seam_cost.cl, which describes them.
 struct SeamCostLaunch {

@@ -13,10 +13,9 @@ namespace facezip::compress {
 /// Masks at the cells of the weight grid, a row of cells after the other. Entries of cell p are
 /// cell_begin[p] .. cell_begin[p + 1] of the other two.
 struct CellMasks {
-  std::vector<int> cell_begin;  ///< #cells + 1, rising from 0
-  std::vector<int> mask_index;  ///< in [0, K), no mask twice in a cell
-  std::vector<float>
-      mask_weights;  ///< M_k at the cell, in [0, 1]; a cell's sum to 1, or it has none and all its weights are 0
+  std::vector<int> cell_begin;      ///< #cells + 1, rising from 0
+  std::vector<int> mask_index;      ///< in [0, K), no mask twice in a cell
+  std::vector<float> mask_weights;  ///< M_k at the cell, in [0, 1]; a cell's sum to 1; no entry means weights of 0
 
   std::size_t cells() const { return cell_begin.empty() ? 0 : cell_begin.size() - 1; }
 };

@@ -43,11 +43,11 @@ kernel void weight_blend(global const uchar* restrict codes, global const int* r
     const float weight = beta[a];
     global const uchar* code = codes + ((block * (ulong)expressions + (ulong)active[a]) * DIFFERENCES * 16 + lane);
     for (int i = 0; i < DIFFERENCES; ++i) {
-      sum[i] = mad(TO_FLOATS(*(global const bytes*)(code + 16 * i)), weight, sum[i]);
+      sum[i] = fma(TO_FLOATS(*(global const bytes*)(code + 16 * i)), weight, sum[i]);
     }
   }
   global float* out = weights + (block * DIFFERENCES * 16 + lane);
   for (int i = 0; i < DIFFERENCES; ++i) {
-    *(global floats*)(out + 16 * i) = mad(sum[i], encoding[i], encoding[DIFFERENCES + i]);
+    *(global floats*)(out + 16 * i) = fma(sum[i], encoding[i], encoding[DIFFERENCES + i]);
   }
 }

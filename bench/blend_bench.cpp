@@ -1,0 +1,139 @@
+// blend_bench.cpp - the run time: blended weight maps and frames (Eq. 8), against copying the same bytes.
+#include <benchmark/benchmark.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "blend/blend.hpp"
+#include "blend/weight_blend.hpp"
+#include "roof.hpp"
+
+namespace facezip::bench {
+namespace {
+
+std::vector<std::byte> hashedBytes(std::size_t count) {
+  std::vector<std::byte> bytes(count);
+  std::uint64_t state = 1;
+  for (std::byte& b : bytes) {
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    b = static_cast<std::byte>(state >> 56);
+  }
+  return bytes;
+}
+
+blend::WeightMaps makeWeights(int cells, int expressions) {
+  const blend::WeightGrid grid{cells, cells, expressions, std::vector<double>(4, 1.0 / 255.0),
+                               std::vector<double>(4, 0.0)};
+  return blend::WeightMaps(benchDevice(), grid, hashedBytes(grid.codeBytes()));
+}
+
+std::vector<float> everyWeight(int expressions) {
+  std::vector<float> beta;
+  for (int n = 0; n < expressions; ++n) beta.push_back(0.01f * static_cast<float>(n + 1));
+  return beta;
+}
+
+/// Textures of a whole square map, and the blended weights they are sampled with.
+struct Scene {
+  Scene(int side, int channels, image::SampleType type)
+      : shape{side,
+              channels,
+              4,
+              type,
+              8,
+              std::vector<float>(static_cast<std::size_t>(4 * channels), 1.0f),
+              std::vector<float>(static_cast<std::size_t>(4 * channels), 128.0f)},
+        weights(makeWeights(side / 8, 52)),
+        textures(benchDevice(), shape, side, side / 8, side / 8) {
+    const std::size_t rows = static_cast<std::size_t>(side);
+    std::vector<std::byte> neutral = hashedBytes(rows * shape.rowBytes());
+    if (type == image::SampleType::kFloat32) std::fill(neutral.begin(), neutral.end(), std::byte{0});
+    const std::vector<std::byte> codes = hashedBytes(rows * shape.differenceRowBytes());
+    textures.setRows(0, side);
+    textures.load(0, side, neutral, std::vector<std::span<const std::byte>>(4, codes));
+    weights.blend(everyWeight(52));
+    benchDevice().finish();
+  }
+
+  /// Bytes that a frame must move: neutral, four differences, the frame.
+  double bytes() const {
+    const double rows = shape.width;
+    return rows * (2.0 * static_cast<double>(shape.rowBytes()) + 4.0 * static_cast<double>(shape.differenceRowBytes()));
+  }
+
+  blend::TextureShape shape;
+  blend::WeightMaps weights;
+  blend::TextureRows textures;
+};
+
+void blendKernel(benchmark::State& state, int channels, image::SampleType type) {
+  Scene scene(static_cast<int>(state.range(0)), channels, type);
+  const cl::Buffer frame = benchDevice().allocate(scene.textures.frameBytes(), CL_MEM_WRITE_ONLY, "frame");
+  measure(state, [&] {
+    scene.textures.enqueue(scene.weights.weights(), frame);
+    benchDevice().finish();
+  });
+  setBandwidthCounters(state, scene.bytes());
+}
+
+/// A frame as a caller gets it: new weights of 52 expressions, the kernel, rows in the caller's memory.
+void wholeFrame(benchmark::State& state, int channels, image::SampleType type) {
+  Scene scene(static_cast<int>(state.range(0)), channels, type);
+  const std::vector<float> beta = everyWeight(52);
+  std::vector<std::byte> out(static_cast<std::size_t>(scene.shape.width) * scene.shape.rowBytes());
+  measure(state, [&] {
+    scene.weights.blend(beta);
+    scene.textures.blend(scene.weights.weights(), out);
+  });
+  setBandwidthCounters(state, scene.bytes());
+}
+
+void weightBlend(benchmark::State& state) {
+  const int cells = static_cast<int>(state.range(0)), expressions = static_cast<int>(state.range(1));
+  blend::WeightMaps weights = makeWeights(cells, expressions);
+  const std::vector<float> beta = everyWeight(expressions);
+  measure(state, [&] {
+    weights.blend(beta);
+    benchDevice().finish();
+  });
+  const double outputs = 4.0 * cells * cells;
+  setBandwidthCounters(state, outputs * (expressions + static_cast<double>(sizeof(float))));
+}
+
+BENCHMARK_CAPTURE(blendKernel, rgb8, 3, image::SampleType::kUint8)
+    ->Arg(1024)
+    ->Arg(2048)
+    ->Arg(4096)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(blendKernel, rgba8, 4, image::SampleType::kUint8)
+    ->Arg(2048)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(blendKernel, grey8, 1, image::SampleType::kUint8)
+    ->Arg(2048)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(blendKernel, rgb16, 3, image::SampleType::kUint16)
+    ->Arg(2048)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(blendKernel, rgb_float, 3, image::SampleType::kFloat32)
+    ->Arg(2048)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(wholeFrame, rgb8, 3, image::SampleType::kUint8)
+    ->Arg(1024)
+    ->Arg(2048)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(weightBlend)
+    ->ArgNames({"cells", "N"})
+    ->Args({128, 20})
+    ->Args({256, 52})
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace facezip::bench

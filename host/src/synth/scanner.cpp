@@ -8,8 +8,8 @@ namespace facezip::synth {
 namespace {
 
 constexpr float kNoiseSigma255 = 0.8f;
-// Gradient noise has an rms of about 0.35; two components of this amplitude have a length of 0.4 rms.
-constexpr float kShiftAmplitude = 0.81f;
+// Gradient noise has an rms of about 0.30; two components of this amplitude have a length of 0.4 rms.
+constexpr float kShiftAmplitude = 0.93f;
 constexpr float kShiftsAcross = 6.0f;  // patches of the image that drift together
 constexpr float kGainsAcross = 2.5f;
 constexpr float kGainAmplitude = 0.01f;  // the most that gradient noise can reach is 1

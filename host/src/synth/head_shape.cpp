@@ -19,14 +19,14 @@ struct Section {
 // Sections at equal steps along the profile, from the throat over chin, lips and brow to the scalp; metres. Equal
 // steps make t an arc length.
 constexpr double kSectionStep = 0.0165;
-constexpr std::array<Section, 18> kSections = {{{-0.128, 0.038, 0.054},
-                                                {-0.114, 0.045, 0.054},
-                                                {-0.101, 0.055, 0.055},
-                                                {-0.093, 0.070, 0.056},
-                                                {-0.084, 0.084, 0.056},
-                                                {-0.070, 0.089, 0.058},
-                                                {-0.055, 0.087, 0.062},
-                                                {-0.040, 0.089, 0.066},
+constexpr std::array<Section, 18> kSections = {{{-0.128, 0.038, 0.050},
+                                                {-0.114, 0.045, 0.051},
+                                                {-0.101, 0.055, 0.053},
+                                                {-0.093, 0.070, 0.057},
+                                                {-0.084, 0.084, 0.060},
+                                                {-0.070, 0.089, 0.063},
+                                                {-0.055, 0.087, 0.066},
+                                                {-0.040, 0.089, 0.0685},
                                                 {-0.023, 0.089, 0.070},
                                                 {-0.006, 0.088, 0.073},
                                                 {0.011, 0.088, 0.075},
@@ -34,9 +34,9 @@ constexpr std::array<Section, 18> kSections = {{{-0.128, 0.038, 0.054},
                                                 {0.045, 0.091, 0.078},
                                                 {0.062, 0.093, 0.079},
                                                 {0.079, 0.090, 0.078},
-                                                {0.095, 0.083, 0.074},
-                                                {0.108, 0.072, 0.067},
-                                                {0.117, 0.058, 0.057}}};
+                                                {0.095, 0.083, 0.073},
+                                                {0.108, 0.072, 0.064},
+                                                {0.117, 0.058, 0.052}}};
 constexpr double kMetresPerRadian = 0.078;
 
 /// The section at height t: a uniform cubic B-spline, smooth enough for shading and free of overshoot.
@@ -78,7 +78,7 @@ HeadShape::HeadShape(std::uint64_t seed) : noise_seed_(deriveSeed(seed, "shape n
 
 double HeadShape::halfWidth(double t) {
   const double corner = std::pow(std::abs((t - 0.025) / 0.1405), 4);
-  return kMetresPerRadian * (1.86 - 0.42 * corner);
+  return kMetresPerRadian * (1.86 - 0.52 * corner);
 }
 
 double HeadShape::noseHeight(double s, double t) const {
@@ -88,8 +88,8 @@ double HeadShape::noseHeight(double s, double t) const {
   const double ridge_width = nose_width_ * std::lerp(0.0100, 0.0070, smoothStep(0.030, 0.056, t));
   const double ridge = 0.0205 * nose_length_ * bridge * base * bump(s / ridge_width);
   const double tip = 0.0045 * nose_length_ * bump2(s, t - 0.030, 0.0075, 0.0065);
-  const double wing =
-      0.0085 * plateau((std::abs(s) - 0.0125 * nose_width_) / 0.0070) * base * smoothStep(0.038, 0.026, t);
+  const double wing = 0.0080 * bump((std::abs(s) - 0.0125 * nose_width_) / 0.0068) * smoothStep(0.0130, 0.0240, t) *
+                      smoothStep(0.041, 0.026, t);
   const double nostril = -0.0045 * bump2(std::abs(s) - 0.0068 * nose_width_, t - 0.0175, 0.0042, 0.0030);
   return ridge + tip + wing + nostril;
 }
@@ -107,7 +107,7 @@ double HeadShape::eyeRelief(double s, double t) const {
 
 double HeadShape::lipRelief(double s, double t) const {
   const double across = plateau(s / 0.0235);
-  const double mound = 0.0055 * plateau(s / 0.030) * bump((t - 0.001) / 0.0190);
+  const double mound = 0.0055 * bump(s / 0.033) * bump((t - 0.001) / 0.0190);
   const double upper = 0.0042 * lip_fullness_ * across * bump((t - 0.0042) / 0.0040) * (1.0 - 0.25 * bump(s / 0.0035));
   const double lower = 0.0052 * lip_fullness_ * across * bump((t + 0.0050) / 0.0048);
   const double line = -0.0034 * plateau(s / 0.0265) * bump(t / 0.0019);
@@ -125,7 +125,7 @@ double HeadShape::cheekRelief(double s, double t) const {
   const double fat = 0.0040 * bump2(side - 0.036, t - 0.016, 0.0130, 0.0170);
   // From the wing of the nose to beside the corner of the mouth.
   const double fold_s = 0.0200 + 0.34 * (0.0260 - t);
-  const double nasolabial = -0.0014 * bump((side - fold_s) / 0.0030) * plateau((t - 0.012) / 0.0160);
+  const double nasolabial = -0.0014 * bump((side - fold_s) / 0.0050) * bump((t - 0.012) / 0.0150);
   const double temple = -0.0050 * bump2(side - 0.086, t - 0.090, 0.0200, 0.0240);
   const double chin = 0.0070 * chin_ * bump2(s, t + 0.033, 0.0150, 0.0130);
   const double jaw = 0.0040 * jaw_width_ * bump2(side - 0.080, t + 0.022, 0.0240, 0.0200);

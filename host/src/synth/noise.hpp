@@ -58,10 +58,10 @@ Real bump(Real x) {
   return std::exp(-x * x);
 }
 
-/// Gradient noise (Perlin 2002) of one feature per unit: mean 0, rms about 0.35, within [-1, 1].
+/// Gradient noise (Perlin 2002) of one feature per unit: mean 0, rms about 0.30, within [-1, 1].
 float gradientNoise(float x, float y, std::uint64_t seed);
 
-/// `octaves` of gradient noise, each of twice the frequency and half the amplitude; rms about 0.4.
+/// `octaves` of gradient noise, each of twice the frequency and half the amplitude; rms about 0.35.
 float fractalNoise(float x, float y, int octaves, std::uint64_t seed);
 
 }  // namespace facezip::synth

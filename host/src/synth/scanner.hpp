@@ -3,8 +3,22 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 namespace facezip::synth {
+
+/// A field over the image that is so smooth that 64 x 64 bilinear patches hold it: six lookups per texel and
+/// expression are cheaper than six evaluations of noise.
+class SmoothField {
+ public:
+  /// amplitude * gradientNoise() with `features` features along a side
+  SmoothField(float amplitude, float features, std::uint64_t seed);
+  float at(float u, float v) const;
+
+ private:
+  static constexpr int kPatches = 64;
+  std::vector<float> knots_;  ///< (kPatches + 1)^2, row-major
+};
 
 /// Imperfections of the scan of one expression. The neutral is only noisy: the others are aligned to it.
 class Scanner {
@@ -25,7 +39,8 @@ class Scanner {
 
  private:
   std::uint64_t take_;
-  bool still_;
+  std::vector<SmoothField> shifts_;  ///< x, y; empty for the neutral
+  std::vector<SmoothField> gains_;   ///< R, G, B; empty for the neutral
 };
 
 }  // namespace facezip::synth

@@ -193,14 +193,14 @@ float Skin::shortHair(float s, float t) const {
   if (density <= 0.0f) return 0.0f;
   // Cropped hair: dark dashes that lie downwards and backwards.
   const float lean = 0.35f * s / 0.1f;
-  const float strands = fractalNoise((s - lean * t) / 0.00075f, (t + lean * s) / 0.0030f, 2, seed_ + 31);
-  const float shown = std::lerp(0.35f, smoothStep(-0.15f, 0.45f, strands), detailVisible(0.0012f, texel_));
-  return density * (0.25f + 0.75f * shown);
+  const float strands = fractalNoise((s - lean * t) / 0.0011f, (t + lean * s) / 0.0055f, 2, seed_ + 31);
+  const float shown = std::lerp(0.35f, smoothStep(-0.45f, 0.60f, strands), detailVisible(0.0012f, texel_));
+  return density * (0.45f + 0.55f * shown);
 }
 
 SkinSample Skin::sample(float s, float t) const {
   const float lip = lipMask(s, t);
-  const float hair = std::max(browHair(s, t), 0.75f * shortHair(s, t));
+  const float hair = std::max(browHair(s, t), 0.50f * shortHair(s, t));
   SkinSample skin;
   skin.height = 0.000016f * detailVisible(0.0016f, texel_) * fractalNoise(s / 0.0016f, t / 0.0016f, 2, seed_ + 10);
   const float pore = pores(s, t, &skin.height) * (1.0f - lip);
@@ -208,9 +208,10 @@ SkinSample Skin::sample(float s, float t) const {
   const float mottled = fractalNoise(s / 0.016f, t / 0.016f, 5, seed_ + 11);
   const float blotched = fractalNoise(s / 0.007f, t / 0.007f, 4, seed_ + 12);
   const float around_eye = spot(std::abs(s) - 0.029f, t - 0.058f, 0.017f, 0.009f);
-  float melanin = melanin_ * (1.0f + 0.16f * mottled + 0.16f * around_eye + 0.10f * lip) + freckles(s, t) + moles(s, t);
-  float blood = haemoglobin_ * (1.0f + 0.26f * blotched) + 0.20f * flushMap(s, t) + 0.05f * pore + lip_red_ * lip;
-  melanin += 0.06f * pore;
+  const float mole = moles(s, t);
+  float melanin = melanin_ * (1.0f + 0.16f * mottled + 0.16f * around_eye + 0.10f * lip) + freckles(s, t) + mole;
+  float blood = haemoglobin_ * (1.0f + 0.26f * blotched) + 0.20f * flushMap(s, t) + 0.10f * pore + lip_red_ * lip;
+  melanin += 0.10f * pore;
 
   const float lines = fractalNoise(s / 0.0013f, t / 0.012f, 2, seed_ + 13) * detailVisible(0.0013f, texel_);
   blood += 0.22f * lip * lines;
@@ -227,7 +228,7 @@ SkinSample Skin::sample(float s, float t) const {
   const float mouth_line = 0.6f * bump(t / 0.0011f) * smoothStep(0.0275f, 0.0235f, std::abs(s));
 
   for (std::size_t c = 0; c < 3; ++c) {
-    const float shadow = (nostril + mouth_line) * (c == 0 ? 0.55f : 0.8f) + lashes;
+    const float shadow = (nostril + mouth_line) * (c == 0 ? 0.55f : 0.8f) + lashes + 0.35f * mole;
     skin.log_colour[c] = kLogBase[c] - melanin * kMelanin[c] - blood * kHaemoglobin[c] -
                          hair * hair_darkness_ * (c == 0 ? 0.85f : 1.0f) - shadow;
   }

@@ -18,9 +18,9 @@ constexpr int kMargin = 5;
 enum Plane : int { kRed, kGreen, kBlue, kHeight, kSpecularPlane, kRoughnessPlane, kPlaneCount };
 
 // How skin answers to its state.
-constexpr float kBloodPerLogArea = -0.42f;  // stretched skin is paler, compressed skin redder
-constexpr float kBloodPerFlush = 0.16f;
-constexpr float kCreaseShading = 0.20f;                                  // log reflectance of a full valley
+constexpr float kBloodPerLogArea = -0.70f;  // stretched skin is paler, compressed skin redder
+constexpr float kBloodPerFlush = 0.24f;
+constexpr float kCreaseShading = 0.42f;                                  // log reflectance of a full valley
 constexpr std::array<float, 3> kShadowExponent = {0.42f, 0.60f, 0.66f};  // light in folds is red: it went through skin
 constexpr float kShadowFloor = 0.22f;
 constexpr float kDisplacementRange = 0.004f;  // metres from black to white
@@ -131,7 +131,7 @@ TexturePainter::Planes TexturePainter::paintSurface(const Performance& performan
     const SkinBand::Texel& texel = skin.texels[i];
     const SkinState state = stateAt(performance, texel.point);
     const Creases creases = creases_.fold(texel.creases, state.compression_x, state.compression_y);
-    const float blood = texel.skin.blood * (kBloodPerLogArea * state.log_area +
+    const float blood = texel.skin.blood * (kBloodPerLogArea * std::clamp(state.log_area, -0.30f, 0.30f) +
                                             kBloodPerFlush * static_cast<float>(performance.flush) * texel.flush);
     const float log_light = std::log(kShadowFloor + (1.0f - kShadowFloor) * state.openness);
     std::array<float, kPlaneCount>& out = planes.texels[i];

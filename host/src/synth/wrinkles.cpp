@@ -16,9 +16,9 @@ struct CreaseScale {
   float darkness;   ///< weight in the shading
 };
 
-constexpr std::array<CreaseScale, kCreaseScales> kScales = {{{0.0068f, 0.060f, 0.34f, 0.00050f, 1.0f},
-                                                             {0.0036f, 0.042f, 0.27f, 0.00026f, 0.75f},
-                                                             {0.0018f, 0.030f, 0.22f, 0.00011f, 0.5f}}};
+constexpr std::array<CreaseScale, kCreaseScales> kScales = {{{0.0068f, 0.055f, 0.27f, 0.00050f, 1.0f},
+                                                             {0.0036f, 0.040f, 0.22f, 0.00026f, 0.75f},
+                                                             {0.0018f, 0.030f, 0.18f, 0.00011f, 0.5f}}};
 constexpr float kElongation = 5.0f;  // length of a crease over its spacing
 
 std::array<std::array<float, 2>, kCreaseDirections> makeDirections() {
@@ -50,7 +50,9 @@ float readinessAt(float s, float t) {
   const float fold = 0.9f * spot(0.030f, 0.012f, 0.012f, 0.022f);
   const float chin = 0.6f * spot(0.0f, -0.030f, 0.018f, 0.014f);
   const float strongest = std::max({forehead, glabella, crows_feet, under_eye, nose, fold, chin});
-  return 0.40f + 0.60f * strongest;
+  // The throat folds softly: it would otherwise outweigh the face whenever the jaw opens.
+  const float throat = std::lerp(0.30f, 1.0f, smoothStep(-0.072f, -0.040f, t));
+  return throat * (0.50f + 0.50f * strongest);
 }
 
 }  // namespace

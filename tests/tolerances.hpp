@@ -1,13 +1,10 @@
-<<<<<<< HEAD
 // tolerances.hpp - how far a result may lie from its reference, and why. One place, so that a loosened bound is seen.
-=======
-// tolerances.hpp - how far results may lie from their references, and why.
->>>>>>> search
 #pragma once
 
 namespace facezip::test {
 
-<<<<<<< HEAD
+// --- texels -----------------------------------------------------------------------------------------------------------
+
 // 16-bit and float differences: one rounding of the subtraction and one of the scaling, each half a unit of 2^-24,
 // relative to the larger sample (255 full scale). 8-bit differences are exact and are compared so.
 inline constexpr double kDifferenceRelative = 2e-7;
@@ -24,7 +21,7 @@ inline constexpr double kDifferenceTextureRelative = 2e-6;
 // Encoded bytes: exact, but for values this close to half way between two bytes, where the rounding of
 // (value - offset) / scale in float32 (255 * 6e-8, and as much again from the reference's own scale) decides.
 inline constexpr double kEncodeTie = 1e-3;
-=======
+
 // --- search on Gram matrices -----------------------------------------------------------------------------------------
 
 /// Seam costs, as a share of the largest squared length of a centred fragment of the pair. e^T H e has entries of H
@@ -51,6 +48,5 @@ inline constexpr double kWeightRounding = 1e-3;
 /// Reconstruction from float coefficients and masks, relative to the largest difference: a handful of products of
 /// 2^-24.
 inline constexpr double kExactReconstruction = 1e-6;
->>>>>>> search
 
 }  // namespace facezip::test

@@ -29,14 +29,13 @@
 #define DIFF_T short
 #endif
 #ifndef PART_TEXELS
-#define PART_TEXELS 128
+#define PART_TEXELS 64
 #endif
 #ifndef SLOT_CHUNK
-#define SLOT_CHUNK 40
+#define SLOT_CHUNK 64
 #endif
 #define PART_ROWS (PART_TEXELS / TILE_SIDE)
 #define SLOT_GROUP 8
-
 
 // Writes weights of `count` slots for PART_ROWS rows from `row`: weights[group][row][slot in group][16]. The rest of the
 // last group becomes 0.
@@ -56,43 +55,60 @@ static void slot_weights(global const int2* slots, int count, global const float
   }
 }
 
-// Transposes a part of four expressions: out[c][p] = the four differences of texel p.
+// Interleaves two rows in pieces that stay inside a quarter of a register, one cheap instruction each:
+// LOW (a0 b0 a1 b1 | a4 b4 a5 b5 | ...), HIGH (a2 b2 a3 b3 | a6 ...); the PAIRS forms do the same to pairs.
+#define LOW(a, b)                                                                                 \
+  (float16)(a.s0, b.s0, a.s1, b.s1, a.s4, b.s4, a.s5, b.s5, a.s8, b.s8, a.s9, b.s9, a.sc, b.sc, a.sd, b.sd)
+#define HIGH(a, b)                                                                                \
+  (float16)(a.s2, b.s2, a.s3, b.s3, a.s6, b.s6, a.s7, b.s7, a.sa, b.sa, a.sb, b.sb, a.se, b.se, a.sf, b.sf)
+// Two floats at a time, as one 64-bit element: written in floats, compilers merge both rounds into slow four-way shuffles.
+#define LOW_PAIRS(a, b) as_float16((ulong8)(a.s0, b.s0, a.s2, b.s2, a.s4, b.s4, a.s6, b.s6))
+#define HIGH_PAIRS(a, b) as_float16((ulong8)(a.s1, b.s1, a.s3, b.s3, a.s5, b.s5, a.s7, b.s7))
+
+// Transposes a part of four expressions: out[c][row][k] = the four differences of texels k, 4 + k, 8 + k and 12 + k.
 static void load_block(global const DIFF_T* tile, int block, int expressions, float16* out) {
+  const int n = 4 * block;
+  const float keep1 = n + 1 < expressions ? 1.0f : 0.0f;
+  const float keep2 = n + 2 < expressions ? 1.0f : 0.0f;
+  const float keep3 = n + 3 < expressions ? 1.0f : 0.0f;
   for (int c = 0; c < CHANNELS; ++c) {
+    global const DIFF_T* x = tile + (ulong)c * TILE_TEXELS;
     for (int r = 0; r < PART_ROWS; ++r) {
-      float16 x[4];
-      for (int i = 0; i < 4; ++i) {
-        const int n = 4 * block + i;
-        x[i] = n < expressions ? convert_float16(vload16(r, tile + (n * CHANNELS + c) * TILE_TEXELS)) : (float16)(0.0f);
-      }
-      // Two rounds of interleaving: pairs (0 1), (2 3), then fours.
-      const float16 p = (float16)(x[0].s0, x[1].s0, x[0].s1, x[1].s1, x[0].s2, x[1].s2, x[0].s3, x[1].s3,  //
-                                  x[0].s4, x[1].s4, x[0].s5, x[1].s5, x[0].s6, x[1].s6, x[0].s7, x[1].s7);
-      const float16 q = (float16)(x[0].s8, x[1].s8, x[0].s9, x[1].s9, x[0].sa, x[1].sa, x[0].sb, x[1].sb,  //
-                                  x[0].sc, x[1].sc, x[0].sd, x[1].sd, x[0].se, x[1].se, x[0].sf, x[1].sf);
-      const float16 u = (float16)(x[2].s0, x[3].s0, x[2].s1, x[3].s1, x[2].s2, x[3].s2, x[2].s3, x[3].s3,  //
-                                  x[2].s4, x[3].s4, x[2].s5, x[3].s5, x[2].s6, x[3].s6, x[2].s7, x[3].s7);
-      const float16 v = (float16)(x[2].s8, x[3].s8, x[2].s9, x[3].s9, x[2].sa, x[3].sa, x[2].sb, x[3].sb,  //
-                                  x[2].sc, x[3].sc, x[2].sd, x[3].sd, x[2].se, x[3].se, x[2].sf, x[3].sf);
+      const float16 x0 = convert_float16(vload16(r, x + n * CHANNELS * TILE_TEXELS));
+      const float16 x1 = keep1 * convert_float16(vload16(r, x + min(n + 1, expressions - 1) * CHANNELS * TILE_TEXELS));
+      const float16 x2 = keep2 * convert_float16(vload16(r, x + min(n + 2, expressions - 1) * CHANNELS * TILE_TEXELS));
+      const float16 x3 = keep3 * convert_float16(vload16(r, x + min(n + 3, expressions - 1) * CHANNELS * TILE_TEXELS));
+      const ulong8 low01 = as_ulong8(LOW(x0, x1));
+      const ulong8 high01 = as_ulong8(HIGH(x0, x1));
+      const ulong8 low23 = as_ulong8(LOW(x2, x3));
+      const ulong8 high23 = as_ulong8(HIGH(x2, x3));
       float16* o = out + (c * PART_ROWS + r) * 4;
-      o[0] = (float16)(p.s01, u.s01, p.s23, u.s23, p.s45, u.s45, p.s67, u.s67);
-      o[1] = (float16)(p.s89, u.s89, p.sab, u.sab, p.scd, u.scd, p.sef, u.sef);
-      o[2] = (float16)(q.s01, v.s01, q.s23, v.s23, q.s45, v.s45, q.s67, v.s67);
-      o[3] = (float16)(q.s89, v.s89, q.sab, v.sab, q.scd, v.scd, q.sef, v.sef);
+      o[0] = LOW_PAIRS(low01, low23);
+      o[1] = HIGH_PAIRS(low01, low23);
+      o[2] = LOW_PAIRS(high01, high23);
+      o[3] = HIGH_PAIRS(high01, high23);
     }
   }
 }
 
 // products[p] lane 4 i + j = sum_c left[c][p].i * right[c][p].j
-static void block_products(const float4* left, const float4* right, float16* products) {
-  for (int p = 0; p < PART_TEXELS; ++p) {
-    float16 sum = (float16)(0.0f);
-    for (int c = 0; c < CHANNELS; ++c) {
-      const float4 a = left[c * PART_TEXELS + p];
-      const float4 b = right[c * PART_TEXELS + p];
-      sum = FMA((float16)(a.xxxx, a.yyyy, a.zzzz, a.wwww), (float16)(b, b, b, b), sum);
+static void block_products(const float16* left, const float4* right, float16* products) {
+  for (int r = 0; r < PART_ROWS; ++r) {
+    for (int k = 0; k < 4; ++k) {
+      float16 p0 = (float16)(0.0f), p1 = (float16)(0.0f), p2 = (float16)(0.0f), p3 = (float16)(0.0f);
+      for (int c = 0; c < CHANNELS; ++c) {
+        const float16 a = left[(c * PART_ROWS + r) * 4 + k];
+        const float4* b = right + ((c * PART_ROWS + r) * 4 + k) * 4;
+        p0 = FMA(a.s0000111122223333, (float16)(b[0], b[0], b[0], b[0]), p0);
+        p1 = FMA(a.s4444555566667777, (float16)(b[1], b[1], b[1], b[1]), p1);
+        p2 = FMA(a.s88889999aaaabbbb, (float16)(b[2], b[2], b[2], b[2]), p2);
+        p3 = FMA(a.sccccddddeeeeffff, (float16)(b[3], b[3], b[3], b[3]), p3);
+      }
+      products[r * TILE_SIDE + k] = p0;
+      products[r * TILE_SIDE + 4 + k] = p1;
+      products[r * TILE_SIDE + 8 + k] = p2;
+      products[r * TILE_SIDE + 12 + k] = p3;
     }
-    products[p] = sum;
   }
 }
 
@@ -160,7 +176,7 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void gram(
             if (loaded != J) load_block(tile_differences + part, J, expressions, right);
             loaded = J;
             load_block(tile_differences + part, I, expressions, left);
-            block_products((const float4*)left, (const float4*)right, products[k]);
+            block_products(left, (const float4*)right, products[k]);
             if (++I > J) {
               I = 0;
               ++J;

@@ -13,7 +13,7 @@ namespace {
 std::string sampleDefines(image::SampleType type) {
   switch (type) {
     case image::SampleType::kUint8:
-      return "-D SAMPLE_T=uchar -D DIFF_IS_INTEGER";
+      return "-D SAMPLE_T=uchar";
     case image::SampleType::kUint16:
       // One rounding as everywhere else: the value that image::unit255() has, to the last bit.
       return fmt::format("-D SAMPLE_T=ushort -D SAMPLE_UNIT={:.9g}f", image::unit255(type));

@@ -54,6 +54,19 @@ class DifferenceTextures {
   /// shape.channels, as in range() bytes     exactly C * rows * width * channels
   void encode(const DeviceTiles& tiles, const BandShape& shape, std::span<const TextureEncoding> encoding,
               std::span<std::uint8_t> bytes);
+
+ private:
+  std::size_t textureBytes(const DeviceTiles& tiles, const BandShape& shape) const;
+  void clear(const BandShape& shape);
+
+  device::DeviceContext& context_;
+  int textures_count_;
+  int expressions_;
+  cl::Buffer coefficients_;
+  device::PooledBuffer textures_;
+  device::PooledBuffer ranges_;
+  device::PooledBuffer encoding_;
+  device::PooledBuffer bytes_;
 };
 
 }  // namespace facezip::compress

@@ -1,0 +1,132 @@
+#include "compress/difference_texture.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cstring>
+#include <limits>
+
+#include "compress/difference.hpp"
+
+namespace facezip::compress {
+namespace {
+
+/// K x C x N, with N rounded up to 4 by zeros: the kernel takes four expressions at a time.
+std::vector<float> paddedCoefficients(const TextureCoefficients& table) {
+  const auto n_count = static_cast<std::size_t>(table.expressions);
+  const std::size_t padded = device::roundUp(n_count, 4);
+  const auto rows = static_cast<std::size_t>(table.masks) * static_cast<std::size_t>(table.textures);
+  assert(table.values.size() == rows * n_count);
+  std::vector<float> result(rows * padded, 0.0f);
+  for (std::size_t row = 0; row < rows; ++row) {
+    std::copy_n(table.values.data() + row * n_count, n_count, result.data() + row * padded);
+  }
+  return result;
+}
+
+std::string channelDefines(const BandShape& shape) { return fmt::format("-D CHANNELS={}", shape.channels); }
+
+}  // namespace
+
+DifferenceTextures::DifferenceTextures(device::DeviceContext& context, const TextureCoefficients& coefficients)
+    : context_(context),
+      textures_count_(coefficients.textures),
+      expressions_(coefficients.expressions),
+      coefficients_(context.upload(paddedCoefficients(coefficients), "coefficients of the difference textures")),
+      textures_(context, "difference textures"),
+      ranges_(context, "ranges of the difference textures"),
+      encoding_(context, "encoding of the difference textures", CL_MEM_READ_ONLY),
+      bytes_(context, "bytes of the difference textures") {
+  assert(textures_count_ >= 1 && textures_count_ <= 8 && expressions_ >= 1);
+}
+
+std::size_t DifferenceTextures::textureBytes(const DeviceTiles& tiles, const BandShape& shape) const {
+  return tiles.tileCount() * static_cast<std::size_t>(textures_count_) * static_cast<std::size_t>(shape.channels) *
+         kTileTexels * sizeof(float);
+}
+
+const cl::Buffer& DifferenceTextures::compute(const DeviceTiles& tiles, const cl::Buffer& differences,
+                                              const BandShape& shape) {
+  assert(shape.expressions == expressions_);
+  device::requireBytes(context_, differences, differenceBufferBytes(shape, tiles.tileCount()), "differences of a band");
+  textures_.reserve(textureBytes(tiles, shape));
+  if (tiles.tileCount() == 0) return textures_.buffer();
+  cl::Kernel kernel = context_.kernel("difference_texture.cl", "difference_texture",
+                                      fmt::format("{} -D TEXTURES={}", differenceDefines(shape), textures_count_));
+  kernel.setArg(0, tiles.maskBegin());
+  kernel.setArg(1, tiles.maskIndex());
+  kernel.setArg(2, tiles.maskWeights());
+  kernel.setArg(3, coefficients_);
+  kernel.setArg(4, differences);
+  kernel.setArg(5, textures_.buffer());
+  kernel.setArg(6, static_cast<cl_int>(expressions_));
+  context_.run(kernel, cl::NDRange(kTileSide, static_cast<std::size_t>(textures_count_), tiles.tileCount()),
+               cl::NDRange(context_.workGroupSize(kernel, kTileSide), 1, 1));
+  return textures_.buffer();
+}
+
+std::vector<TextureRange> DifferenceTextures::range(const DeviceTiles& tiles, const BandShape& shape) {
+  const std::size_t planes = static_cast<std::size_t>(textures_count_) * static_cast<std::size_t>(shape.channels);
+  std::vector<TextureRange> result(planes,
+                                   {std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()});
+  if (tiles.tileCount() == 0) return result;
+  device::requireBytes(context_, textures_.buffer(), textureBytes(tiles, shape), "difference textures of a band");
+  const std::size_t bytes = tiles.tileCount() * planes * sizeof(cl_float2);
+  ranges_.reserve(bytes);
+  cl::Kernel kernel = context_.kernel("difference_texture_range.cl", "difference_texture_range");
+  kernel.setArg(0, tiles.maskBegin());
+  kernel.setArg(1, tiles.maskWeights());
+  kernel.setArg(2, textures_.buffer());
+  kernel.setArg(3, ranges_.buffer());
+  kernel.setArg(4, static_cast<cl_int>(planes));
+  context_.run(kernel, cl::NDRange(tiles.tileCount()), cl::NDRange(1));
+  const device::MappedBytes mapped = ranges_.mapForReading(bytes);
+  const std::span<const cl_float2> ranges = mapped.as<const cl_float2>();
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    TextureRange& range = result[i % planes];
+    range.min = std::min(range.min, ranges[i].s[0]);
+    range.max = std::max(range.max, ranges[i].s[1]);
+  }
+  return result;
+}
+
+void DifferenceTextures::clear(const BandShape& shape) {
+  cl::Kernel kernel =
+      context_.kernel("difference_texture_encode.cl", "difference_texture_clear", channelDefines(shape));
+  kernel.setArg(0, encoding_.buffer());
+  kernel.setArg(1, bytes_.buffer());
+  context_.run(kernel,
+               cl::NDRange(static_cast<std::size_t>(shape.width), static_cast<std::size_t>(shape.rows),
+                           static_cast<std::size_t>(textures_count_)),
+               cl::NullRange);
+}
+
+void DifferenceTextures::encode(const DeviceTiles& tiles, const BandShape& shape,
+                                std::span<const TextureEncoding> encoding, std::span<std::uint8_t> bytes) {
+  assert(encoding.size() == static_cast<std::size_t>(textures_count_) * static_cast<std::size_t>(shape.channels));
+  assert(bytes.size() ==
+         static_cast<std::size_t>(shape.rows) * static_cast<std::size_t>(shape.width) * encoding.size());
+  std::vector<cl_float2> factors;
+  for (const TextureEncoding& e : encoding) factors.push_back({{e.scale > 0.0f ? 1.0f / e.scale : 0.0f, e.offset}});
+  encoding_.upload(std::span<const cl_float2>(factors));
+  bytes_.reserve(bytes.size());
+  clear(shape);
+  if (tiles.tileCount() > 0) {
+    device::requireBytes(context_, textures_.buffer(), textureBytes(tiles, shape), "difference textures of a band");
+    cl::Kernel kernel =
+        context_.kernel("difference_texture_encode.cl", "difference_texture_encode", channelDefines(shape));
+    kernel.setArg(0, tiles.positions());
+    kernel.setArg(1, textures_.buffer());
+    kernel.setArg(2, encoding_.buffer());
+    kernel.setArg(3, bytes_.buffer());
+    kernel.setArg(4, static_cast<cl_int>(shape.width));
+    kernel.setArg(5, static_cast<cl_int>(shape.rows));
+    context_.run(kernel, cl::NDRange(kTileSide, static_cast<std::size_t>(textures_count_), tiles.tileCount()),
+                 cl::NDRange(context_.workGroupSize(kernel, kTileSide), 1, 1));
+  }
+  const device::MappedBytes mapped = bytes_.mapForReading(bytes.size());
+  if (!bytes.empty()) std::memcpy(bytes.data(), mapped.bytes().data(), bytes.size());
+}
+
+}  // namespace facezip::compress

@@ -1,0 +1,244 @@
+#include "compress/difference_texture.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "canary_buffer.hpp"
+#include "compress/difference.hpp"
+#include "reference/difference.hpp"
+#include "reference/difference_texture.hpp"
+#include "synthetic_band.hpp"
+#include "test_device.hpp"
+#include "tolerances.hpp"
+
+namespace facezip::compress {
+namespace {
+
+using image::SampleType;
+
+struct Case {
+  BandShape shape;
+  int masks;
+  int most_masks;
+  int textures;
+};
+
+/// Every expression in one texture of each mask, with 1 / (size of the cluster).
+TextureCoefficients makeCoefficients(int masks, int textures, int expressions) {
+  std::mt19937_64 random(21);
+  TextureCoefficients table{masks, textures, expressions, {}};
+  table.values.assign(static_cast<std::size_t>(masks * textures * expressions), 0.0f);
+  for (int k = 0; k < masks; ++k) {
+    std::vector<int> texture_of(static_cast<std::size_t>(expressions));
+    std::vector<int> size(static_cast<std::size_t>(textures));
+    for (int& texture : texture_of) {
+      texture = test::intRandom(random, textures);
+      ++size[static_cast<std::size_t>(texture)];
+    }
+    for (int n = 0; n < expressions; ++n) {
+      const int i = texture_of[static_cast<std::size_t>(n)];
+      table.values[static_cast<std::size_t>((k * textures + i) * expressions + n)] =
+          1.0f / static_cast<float>(size[static_cast<std::size_t>(i)]);
+    }
+  }
+  return table;
+}
+
+/// A band on the device with its difference textures, and the same from the reference.
+struct Computed {
+  explicit Computed(const Case& which)
+      : shape(which.shape),
+        band(test::makeBand(shape, 15)),
+        masks(test::makeTileMasks(shape, which.masks, which.most_masks, 16)),
+        table(makeCoefficients(which.masks, which.textures, shape.expressions)),
+        tiles(test::testDevice()),
+        textures(test::testDevice(), table) {
+    device::DeviceContext& context = test::testDevice();
+    tiles.upload(masks);
+    const cl::Buffer samples = context.upload(band.samples, "samples");
+    const cl::Buffer differences =
+        context.allocate(differenceBufferBytes(shape, masks.tiles.size()), CL_MEM_READ_WRITE, "differences");
+    computeDifferences(context, tiles, shape, samples, differences);
+    const cl::Buffer& buffer = textures.compute(tiles, differences, shape);
+    actual.resize(masks.tiles.size() * planes() * kTileTexels);
+    context.read(buffer, actual.data(), actual.size() * sizeof(float), "textures");
+    computeReference();
+  }
+
+  std::size_t planes() const { return static_cast<std::size_t>(table.textures * shape.channels); }
+
+  void computeReference() {
+    const std::vector<double> differences =
+        reference::differences(band.values, test::tilePositions(masks), shape.width, shape.rows, shape.channels,
+                               shape.expressions, static_cast<double>(image::unit255(shape.sample_type)));
+    const auto per_tile = static_cast<std::ptrdiff_t>(shape.expressions * shape.channels * kTileTexels);
+    for (std::size_t t = 0; t < masks.tiles.size(); ++t) {
+      const auto first = differences.begin() + static_cast<std::ptrdiff_t>(t) * per_tile;
+      std::vector<std::pair<int, std::vector<double>>> active;
+      for (int e = masks.mask_begin[t]; e < masks.mask_begin[t + 1]; ++e) {
+        const auto weights = masks.mask_weights.begin() + static_cast<std::ptrdiff_t>(e) * kTileTexels;
+        active.push_back({masks.mask_index[static_cast<std::size_t>(e)], {weights, weights + kTileTexels}});
+      }
+      const std::vector<double> tile = reference::differenceTexture(
+          active, table.values, table.textures, shape.expressions, shape.channels, {first, first + per_tile});
+      expected.insert(expected.end(), tile.begin(), tile.end());
+    }
+  }
+
+  /// True if a mask of tile `t` is above zero at texel `p`.
+  bool covered(std::size_t t, std::size_t p) const {
+    for (int e = masks.mask_begin[t]; e < masks.mask_begin[t + 1]; ++e) {
+      if (masks.mask_weights[static_cast<std::size_t>(e) * kTileTexels + p] > 0.0f) return true;
+    }
+    return false;
+  }
+
+  BandShape shape;
+  test::SyntheticBand band;
+  TileMasks masks;
+  TextureCoefficients table;
+  DeviceTiles tiles;
+  DifferenceTextures textures;
+  std::vector<float> actual;     ///< [tile][plane][256]
+  std::vector<double> expected;  ///< the same
+};
+
+class DifferenceTexture : public testing::TestWithParam<Case> {
+ protected:
+  void SetUp() override {
+    if (test::smallSizesOnly() && GetParam().shape.expressions > 3) GTEST_SKIP() << "small sizes only";
+  }
+};
+
+TEST_P(DifferenceTexture, EqualsReference) {
+  const Computed computed(GetParam());
+  ASSERT_EQ(computed.actual.size(), computed.expected.size());
+  const double full_scale = computed.shape.sample_type == SampleType::kFloat32 ? 2.0 * 255.0 : 255.0;
+  for (std::size_t i = 0; i < computed.actual.size(); ++i) {
+    ASSERT_NEAR(static_cast<double>(computed.actual[i]), computed.expected[i],
+                test::kDifferenceTextureRelative * full_scale)
+        << "at " << i;
+  }
+}
+
+TEST_P(DifferenceTexture, RangeCoversTheTexelsUnderAMask) {
+  Computed computed(GetParam());
+  const std::vector<TextureRange> ranges = computed.textures.range(computed.tiles, computed.shape);
+  ASSERT_EQ(ranges.size(), computed.planes());
+  for (std::size_t plane = 0; plane < ranges.size(); ++plane) {
+    float low = std::numeric_limits<float>::infinity();
+    float high = -low;
+    for (std::size_t t = 0; t < computed.masks.tiles.size(); ++t) {
+      for (std::size_t p = 0; p < kTileTexels; ++p) {
+        if (!computed.covered(t, p)) continue;
+        const float value = computed.actual[(t * computed.planes() + plane) * kTileTexels + p];
+        low = std::min(low, value);
+        high = std::max(high, value);
+      }
+    }
+    EXPECT_EQ(ranges[plane].min, low) << "plane " << plane;
+    EXPECT_EQ(ranges[plane].max, high) << "plane " << plane;
+  }
+}
+
+TEST_P(DifferenceTexture, EncodesEveryTexelOfTheBand) {
+  Computed computed(GetParam());
+  const BandShape& shape = computed.shape;
+  std::vector<TextureEncoding> encoding;
+  for (std::size_t plane = 0; plane < computed.planes(); ++plane) {
+    // Narrower than the values, so that some are clamped; the last plane is a constant.
+    encoding.push_back({plane + 1 == computed.planes() ? 0.0f : 0.25f + 0.125f * static_cast<float>(plane), -20.5f});
+  }
+  const auto texels = static_cast<std::size_t>(shape.rows) * static_cast<std::size_t>(shape.width);
+  std::vector<std::uint8_t> guarded(texels * computed.planes() + 64, 0xA5);
+  computed.textures.encode(computed.tiles, shape, encoding, std::span(guarded).first(guarded.size() - 64));
+  for (std::size_t i = guarded.size() - 64; i < guarded.size(); ++i) ASSERT_EQ(guarded[i], 0xA5);
+
+  // Values of the band in rows; 0 where there is no tile.
+  std::vector<double> values(texels * computed.planes(), 0.0);
+  const auto channels = static_cast<std::size_t>(shape.channels);
+  for (std::size_t t = 0; t < computed.masks.tiles.size(); ++t) {
+    for (std::size_t plane = 0; plane < computed.planes(); ++plane) {
+      for (std::size_t p = 0; p < kTileTexels; ++p) {
+        const auto x = static_cast<std::size_t>(computed.masks.tiles[t].x) * kTileSide + p % kTileSide;
+        const auto y = static_cast<std::size_t>(computed.masks.tiles[t].y) * kTileSide + p / kTileSide;
+        if (x >= static_cast<std::size_t>(shape.width) || y >= static_cast<std::size_t>(shape.rows)) continue;
+        const std::size_t texel = plane / channels * texels + y * static_cast<std::size_t>(shape.width) + x;
+        values[texel * channels + plane % channels] =
+            static_cast<double>(computed.actual[(t * computed.planes() + plane) * kTileTexels + p]);
+      }
+    }
+  }
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::size_t plane = i / (texels * channels) * channels + i % channels;
+    const double position = reference::bytePosition(values[i], static_cast<double>(encoding[plane].scale),
+                                                    static_cast<double>(encoding[plane].offset));
+    // Half upwards, with room for the last bit of float32 at the half itself.
+    ASSERT_GE(static_cast<double>(guarded[i]), position - 0.5 - test::kEncodeTie) << "at " << i;
+    ASSERT_LE(static_cast<double>(guarded[i]), position + 0.5 + test::kEncodeTie) << "at " << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, DifferenceTexture,
+                         testing::Values(Case{{93, 16, 3, 3, SampleType::kUint8}, 5, 4, 4},
+                                         Case{{93, 10, 1, 1, SampleType::kUint8}, 3, 2, 1},
+                                         Case{{40, 16, 4, 3, SampleType::kUint16}, 3, 3, 2},
+                                         Case{{93, 32, 3, 20, SampleType::kUint8}, 14, 12, 4},
+                                         Case{{93, 32, 4, 37, SampleType::kFloat32}, 13, 12, 8},
+                                         Case{{93, 10, 1, 6, SampleType::kFloat32}, 9, 8, 3}));
+
+TEST(DifferenceTexture, HalvesRoundUpwards) {
+  // One expression that differs by 1 everywhere under one full mask: D = 1, scale 2 and offset 0 make 0.5.
+  const BandShape shape{16, 16, 1, 1, SampleType::kUint8};
+  device::DeviceContext& context = test::testDevice();
+  TileMasks masks;
+  masks.tiles = {{0, 0}};
+  masks.mask_begin = {0, 1};
+  masks.mask_index = {0};
+  masks.mask_weights.assign(kTileTexels, 1.0f);
+  masks.texel_weights.assign(kTileTexels, 1.0f);
+  DeviceTiles tiles(context);
+  tiles.upload(masks);
+  const cl::Buffer differences = context.upload(std::vector<cl_short>(kTileTexels, 1), "differences");
+  DifferenceTextures textures(context, {1, 1, 1, {1.0f}});
+  textures.compute(tiles, differences, shape);
+  std::vector<std::uint8_t> bytes(kTileTexels);
+  textures.encode(tiles, shape, std::vector<TextureEncoding>{{2.0f, 0.0f}}, bytes);
+  EXPECT_EQ(bytes, std::vector<std::uint8_t>(kTileTexels, 1));
+}
+
+TEST(DifferenceTexture, BandWithoutTilesIsTheByteOfZero) {
+  const BandShape shape{33, 5, 2, 2, SampleType::kUint8};
+  device::DeviceContext& context = test::testDevice();
+  TileMasks none;
+  none.mask_begin = {0};
+  DeviceTiles tiles(context);
+  tiles.upload(none);
+  DifferenceTextures textures(context, {1, 1, 2, {0.5f, 0.5f}});
+  textures.compute(tiles, context.allocate(1, CL_MEM_READ_WRITE, "none"), shape);
+  for (const TextureRange& range : textures.range(tiles, shape)) EXPECT_GT(range.min, range.max);
+  std::vector<std::uint8_t> bytes(33 * 5 * 2);
+  textures.encode(tiles, shape, std::vector<TextureEncoding>{{1.0f, -128.0f}, {2.0f, -20.0f}}, bytes);
+  for (std::size_t i = 0; i < bytes.size(); i += 2) {
+    ASSERT_EQ(bytes[i], 128);
+    ASSERT_EQ(bytes[i + 1], 10);
+  }
+}
+
+TEST(DifferenceTexture, RefusesABufferThatIsTooSmall) {
+  device::DeviceContext& context = test::testDevice();
+  const BandShape shape{93, 16, 3, 2, SampleType::kUint8};
+  const TileMasks masks = test::makeTileMasks(shape, 3, 1, 2);
+  DeviceTiles tiles(context);
+  tiles.upload(masks);
+  const cl::Buffer small =
+      context.allocate(differenceBufferBytes(shape, masks.tiles.size()) - 1, CL_MEM_READ_WRITE, "differences");
+  DifferenceTextures textures(context, makeCoefficients(3, 4, 2));
+  EXPECT_THROW(textures.compute(tiles, small, shape), DeviceError);
+}
+
+}  // namespace
+}  // namespace facezip::compress

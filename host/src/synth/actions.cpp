@@ -128,7 +128,7 @@ std::vector<Action> makeActionBasis() {
 double jawShare(const GridVertex& vertex) {
   const double back = smoothStep(0.112, 0.040, std::abs(vertex.s));
   const double neck = smoothStep(-0.112, -0.052, vertex.t);
-  return vertex.lower_lip * std::lerp(0.25, 1.0, back) * neck;
+  return vertex.lower_lip * mix(0.25, 1.0, back) * neck;
 }
 
 Eigen::Vector3d pullDisplacement(const Pull& pull, const GridVertex& vertex) {

@@ -64,10 +64,9 @@ double columnDistance(int column, const Landmarks& marks) {
   const double outer = marks.eye_s + marks.eye_half_width;
   if (column <= kInnerEyeColumn) return inner * column / kInnerEyeColumn;
   if (column <= kMouthColumn)
-    return std::lerp(inner, marks.mouth_half_width,
-                     (column - kInnerEyeColumn) / double(kMouthColumn - kInnerEyeColumn));
+    return mix(inner, marks.mouth_half_width, (column - kInnerEyeColumn) / double(kMouthColumn - kInnerEyeColumn));
   if (column <= kOuterEyeColumn)
-    return std::lerp(marks.mouth_half_width, outer, (column - kMouthColumn) / double(kOuterEyeColumn - kMouthColumn));
+    return mix(marks.mouth_half_width, outer, (column - kMouthColumn) / double(kOuterEyeColumn - kMouthColumn));
   const double step = (outer - marks.mouth_half_width) / (kOuterEyeColumn - kMouthColumn);
   const double n = column - kOuterEyeColumn;
   const double last = kMiddleColumn - kOuterEyeColumn;
@@ -105,7 +104,7 @@ double openingProfile(const Slit& slit, double s, double t) {
 
 double lowerLip(const GridVertex& vertex, const Landmarks& marks, bool on_slit) {
   const double side = std::abs(vertex.s) / marks.mouth_half_width;
-  const double blend = std::lerp(0.003, 0.034, smoothStep(0.6, 1.7, side));
+  const double blend = mix(0.003, 0.034, smoothStep(0.6, 1.7, side));
   const double apart = on_slit && side < 1.0 ? blend * (1.0 - std::pow(side, 4)) : 0.0;
   return smoothStep(blend, -blend, vertex.t + vertex.side[kMouth] * apart);
 }

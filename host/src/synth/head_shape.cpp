@@ -85,7 +85,7 @@ double HeadShape::noseHeight(double s, double t) const {
   // Along the midline: a straight bridge, a rounded tip and a short steep base.
   const double bridge = smoothStep(0.074, 0.031, t);
   const double base = smoothStep(0.0135, 0.0265, t);
-  const double ridge_width = nose_width_ * std::lerp(0.0100, 0.0070, smoothStep(0.030, 0.056, t));
+  const double ridge_width = nose_width_ * mix(0.0100, 0.0070, smoothStep(0.030, 0.056, t));
   const double ridge = 0.0205 * nose_length_ * bridge * base * bump(s / ridge_width);
   const double tip = 0.0045 * nose_length_ * bump2(s, t - 0.030, 0.0075, 0.0065);
   const double wing = 0.0080 * bump((std::abs(s) - 0.0125 * nose_width_) / 0.0068) * smoothStep(0.0130, 0.0240, t) *
@@ -146,7 +146,7 @@ Eigen::Vector3d HeadShape::position(SkinPoint point) const {
   constexpr double kExponent = 2.35;
   const double radius =
       std::pow(std::pow(std::abs(sine), kExponent) + std::pow(std::abs(cosine), kExponent), -1.0 / kExponent);
-  const double half_width = section.half_width * width_ * std::lerp(jaw_width_, 1.0, smoothStep(-0.06, 0.04, point.t));
+  const double half_width = section.half_width * width_ * mix(jaw_width_, 1.0, smoothStep(-0.06, 0.04, point.t));
   const Eigen::Vector3d base(half_width * radius * sine, section.y, section.depth * radius * cosine);
   // The tip of the nose hangs a little.
   const double height = relief(point.s, point.t);

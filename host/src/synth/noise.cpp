@@ -38,22 +38,26 @@ float corner(std::int64_t column, std::int64_t row, float dx, float dy, std::uin
   return gradient.x * dx + gradient.y * dy;
 }
 
+/// std::floor is a library call where SSE4.1 may not be assumed.
+std::int64_t floorToInteger(float x) {
+  const auto truncated = static_cast<std::int64_t>(x);
+  return truncated - (static_cast<float>(truncated) > x ? 1 : 0);
+}
+
 float quintic(float f) { return f * f * f * (f * (f * 6.0f - 15.0f) + 10.0f); }
 
 }  // namespace
 
 float gradientNoise(float x, float y, std::uint64_t seed) {
-  const float floor_x = std::floor(x);
-  const float floor_y = std::floor(y);
-  const auto column = static_cast<std::int64_t>(floor_x);
-  const auto row = static_cast<std::int64_t>(floor_y);
-  const float dx = x - floor_x;
-  const float dy = y - floor_y;
+  const std::int64_t column = floorToInteger(x);
+  const std::int64_t row = floorToInteger(y);
+  const float dx = x - static_cast<float>(column);
+  const float dy = y - static_cast<float>(row);
   const float fx = quintic(dx);
-  const float top = std::lerp(corner(column, row, dx, dy, seed), corner(column + 1, row, dx - 1, dy, seed), fx);
+  const float top = mix(corner(column, row, dx, dy, seed), corner(column + 1, row, dx - 1, dy, seed), fx);
   const float bottom =
-      std::lerp(corner(column, row + 1, dx, dy - 1, seed), corner(column + 1, row + 1, dx - 1, dy - 1, seed), fx);
-  return 1.4142135f * std::lerp(top, bottom, quintic(dy));
+      mix(corner(column, row + 1, dx, dy - 1, seed), corner(column + 1, row + 1, dx - 1, dy - 1, seed), fx);
+  return 1.4142135f * mix(top, bottom, quintic(dy));
 }
 
 float fractalNoise(float x, float y, int octaves, std::uint64_t seed) {

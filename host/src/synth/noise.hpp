@@ -52,6 +52,12 @@ Real smoothStep(Real low, Real high, Real x) {
   return f * f * (Real(3) - Real(2) * f);
 }
 
+/// a at f = 0, b at f = 1. std::lerp promises more than noise needs (exactness at both ends) and branches for it.
+template <typename Real>
+Real mix(Real a, Real b, Real f) {
+  return a + f * (b - a);
+}
+
 /// exp(-x^2): a bump of half-width about 1.
 template <typename Real>
 Real bump(Real x) {

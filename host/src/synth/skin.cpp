@@ -194,7 +194,7 @@ float Skin::shortHair(float s, float t) const {
   // Cropped hair: dark dashes that lie downwards and backwards.
   const float lean = 0.35f * s / 0.1f;
   const float strands = fractalNoise((s - lean * t) / 0.0011f, (t + lean * s) / 0.0055f, 2, seed_ + 31);
-  const float shown = std::lerp(0.35f, smoothStep(-0.45f, 0.60f, strands), detailVisible(0.0012f, texel_));
+  const float shown = mix(0.35f, smoothStep(-0.45f, 0.60f, strands), detailVisible(0.0012f, texel_));
   return density * (0.45f + 0.55f * shown);
 }
 

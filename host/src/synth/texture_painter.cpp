@@ -40,7 +40,7 @@ class LogToSrgb255 {
   float operator()(float x) const {
     const float position = std::clamp((x - kLow) * kPerUnit, 0.0f, static_cast<float>(table_.size() - 2));
     const auto index = static_cast<std::size_t>(position);
-    return std::lerp(table_[index], table_[index + 1], position - static_cast<float>(index));
+    return mix(table_[index], table_[index + 1], position - static_cast<float>(index));
   }
 
  private:
@@ -117,11 +117,12 @@ SkinState TexturePainter::stateAt(const Performance& performance, const MeshPoin
   const SkinState& a = performance.states[static_cast<std::size_t>(corners(0))];
   const SkinState& b = performance.states[static_cast<std::size_t>(corners(1))];
   const SkinState& c = performance.states[static_cast<std::size_t>(corners(2))];
-  const auto mix = [&](float SkinState::*field) {
+  const auto interpolate = [&](float SkinState::*field) {
     return a.*field + point.b1 * (b.*field - a.*field) + point.b2 * (c.*field - a.*field);
   };
-  return {mix(&SkinState::compression_x), mix(&SkinState::compression_y), mix(&SkinState::log_area),
-          mix(&SkinState::openness),      mix(&SkinState::metres_per_u),  mix(&SkinState::metres_per_v)};
+  return {interpolate(&SkinState::compression_x), interpolate(&SkinState::compression_y),
+          interpolate(&SkinState::log_area),      interpolate(&SkinState::openness),
+          interpolate(&SkinState::metres_per_u),  interpolate(&SkinState::metres_per_v)};
 }
 
 TexturePainter::Planes TexturePainter::paintSurface(const Performance& performance, const SkinBand& skin) const {

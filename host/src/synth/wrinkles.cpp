@@ -51,7 +51,7 @@ float readinessAt(float s, float t) {
   const float chin = 0.6f * spot(0.0f, -0.030f, 0.018f, 0.014f);
   const float strongest = std::max({forehead, glabella, crows_feet, under_eye, nose, fold, chin});
   // The throat folds softly: it would otherwise outweigh the face whenever the jaw opens.
-  const float throat = std::lerp(0.30f, 1.0f, smoothStep(-0.072f, -0.040f, t));
+  const float throat = mix(0.30f, 1.0f, smoothStep(-0.072f, -0.040f, t));
   return throat * (0.50f + 0.50f * strongest);
 }
 
@@ -102,7 +102,7 @@ Creases CreaseField::fold(const CreasePattern& pattern, float x, float y) const 
   for (std::size_t scale = 0; scale < kCreaseScales; ++scale) {
     const float formed = smoothStep(kScales[scale].threshold, kScales[scale].full, compression) * pattern.readiness;
     if (formed == 0.0f) continue;
-    const float relief = formed * std::lerp(pattern.relief[scale][first], pattern.relief[scale][second], share);
+    const float relief = formed * mix(pattern.relief[scale][first], pattern.relief[scale][second], share);
     creases.height += kScales[scale].depth * relief;
     creases.shading += kScales[scale].darkness * relief;
   }

@@ -105,6 +105,16 @@ TEST(SeamCost, EqualClustersCostNothing) {
   EXPECT_GT(tables.entry(0, 0, 1), 0.0);
 }
 
+// Clusters of one copy and of three copies of the same five expressions have the same mean: their cost is nothing but
+// rounding, and rounding has both signs.
+TEST(SeamCost, RoundingIsNeverNegative) {
+  SearchCapture capture = randomCapture(5, 7, 5);
+  for (std::size_t n = 5; n < 20; ++n) capture.differences.push_back(capture.differences[n % 5]);
+  Clustering clustering = randomClustering(7, 20, 2, 2, 3);
+  for (std::size_t i = 0; i < clustering.labels.size(); ++i) clustering.labels[i] = i % 20 < 5 ? 0 : 1;
+  expectReferenceTables(capture, clustering);
+}
+
 // All fragments far from the neutral: costs between clusters that hold fragments keep the precision of their spread.
 TEST(SeamCost, KeepsItsPrecisionFarFromTheNeutral) {
   const SearchCapture near = randomCapture(20, 2, 4);

@@ -8,8 +8,9 @@
 namespace facezip::compress {
 namespace {
 
-// Expressions of a work-item in weight_map.cl.
+// Expressions and cells of a work-item in weight_map.cl.
 constexpr int kLanes = 16;
+constexpr std::size_t kCells = 16;
 
 int blocksOf(int expressions) { return (expressions + kLanes - 1) / kLanes; }
 
@@ -36,10 +37,10 @@ cl::Event launchWeightMap(device::DeviceContext& context, const WeightMapLaunch&
   kernel.setArg(5, static_cast<cl_ulong>(launch.cells));
   kernel.setArg(6, static_cast<cl_int>(launch.expressions));
   kernel.setArg(7, static_cast<cl_int>(launch.first_entry));
-  const std::size_t local = context.workGroupSize(kernel, 64);
-  return context.run(
-      kernel, cl::NDRange(device::roundUp(launch.cells, local), static_cast<std::size_t>(blocksOf(launch.expressions))),
-      cl::NDRange(local, 1));
+  const std::size_t local = context.workGroupSize(kernel, 16);
+  const std::size_t columns = device::roundUp((launch.cells + kCells - 1) / kCells, local);
+  return context.run(kernel, cl::NDRange(columns, static_cast<std::size_t>(blocksOf(launch.expressions))),
+                     cl::NDRange(local, 1));
 }
 
 WeightMapper::WeightMapper(device::DeviceContext& context, std::span<const int> texture_of, int masks, int expressions,

@@ -1,0 +1,401 @@
+#include "facezip/package.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "image/image_file.hpp"
+#include "io/staged_directory.hpp"
+#include "package/package_json.hpp"
+#include "package/weight_atlas.hpp"
+#include "sample_package.hpp"
+#include "temporary_directory.hpp"
+
+namespace facezip {
+namespace {
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::makeSample;
+using test::SamplePackage;
+using testing::HasSubstr;
+
+std::string readText(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+/// Opens a package that is damaged; returns the message. Anything but an InputError fails the test.
+std::string messageOfOpening(const fs::path& directory) {
+  try {
+    Package::open(directory);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "expected an InputError";
+  return "";
+}
+
+std::vector<std::byte> readSamples(const fs::path& file) { return image::readImage(file).samples; }
+
+class PackageContents : public testing::TestWithParam<std::tuple<SampleType, int, int>> {};
+
+TEST_P(PackageContents, ComeBackAsTheyWereWritten) {
+  const auto& [type, channels, differences] = GetParam();
+  const test::TemporaryDirectory folder;
+  SamplePackage sample = makeSample({{"albedo", 41, 23, channels, type, 8}}, 5, differences);
+  test::writeSample(sample, folder / "package");
+  const Package package = Package::open(folder / "package");
+  EXPECT_EQ(package::packageJson(package.description()), package::packageJson(sample.description));
+  EXPECT_EQ(package.expressions(), sample.description.expressions);
+  EXPECT_EQ(package.maps()[0].differences[0].scale, sample.description.maps[0].differences[0].scale);
+  EXPECT_EQ(json::parse(package.methodJson())["seed"], 5);
+  EXPECT_EQ(readSamples(package.directory() / package.maps()[0].neutral_file), sample.neutrals[0]);
+  for (std::size_t i = 0; i < sample.differences[0].size(); ++i) {
+    EXPECT_EQ(readSamples(package.directory() / package.maps()[0].differences[i].file), sample.differences[0][i]) << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(TypesChannelsDifferences, PackageContents,
+                         testing::Combine(testing::Values(SampleType::kUint8, SampleType::kUint16,
+                                                          SampleType::kFloat32),
+                                          testing::Values(1, 2, 3, 4), testing::Values(1, 4, 6)));
+
+TEST(WeightAtlas, ComesBackAndRepeatsEdgesInTheBorder) {
+  for (const int differences : {1, 2, 3, 4, 5, 8}) {
+    const test::TemporaryDirectory folder;
+    SamplePackage sample = makeSample({{}}, 7, differences);
+    test::writeSample(sample, folder.path());
+    const PackageWeights& weights = sample.description.weights;
+    std::vector<std::byte> codes(sample.weights.size());
+    package::readWeightAtlas(sample.description, folder.path(),
+                             [&](int n, int y, int first, int count, std::span<const std::byte> row) {
+                               for (std::size_t b = 0; b < row.size(); ++b) {
+                                 const int x = static_cast<int>(b) / count, i = first + static_cast<int>(b) % count;
+                                 const int cell = (n * weights.tile_height + y) * weights.tile_width + x;
+                                 codes[static_cast<std::size_t>(cell * differences + i)] = row[b];
+                               }
+                             });
+    EXPECT_EQ(codes, sample.weights) << differences;
+  }
+  const test::TemporaryDirectory folder;
+  SamplePackage sample = makeSample();
+  test::writeSample(sample, folder.path());
+  const image::Image atlas = image::readImage(folder / "weights.png");
+  const auto cell = [&](int x, int y) {
+    return reinterpret_cast<const std::uint32_t*>(atlas.samples.data())[y * atlas.shape.width + x];
+  };
+  const int width = sample.description.weights.tile_width, height = sample.description.weights.tile_height;
+  const int left = width + 2;  // the second tile
+  EXPECT_EQ(cell(left, 0), cell(left + 1, 1));
+  EXPECT_EQ(cell(left + width + 1, height + 1), cell(left + width, height));
+  EXPECT_EQ(cell(left + 2, 0), cell(left + 2, 1));
+  EXPECT_EQ(cell(left, 2), cell(left + 1, 2));
+}
+
+TEST(WeightAtlas, IsNearSquareAndRefusesWhatNoGpuTakes) {
+  PackageWeights weights;
+  weights.tile_width = weights.tile_height = 256;
+  package::arrangeAtlas(weights, 52);
+  EXPECT_EQ(weights.columns, 8);
+  EXPECT_EQ(weights.rows, 7);
+  weights.tile_width = 4096;
+  weights.tile_height = 4096;
+  package::arrangeAtlas(weights, 9);
+  EXPECT_THROW(package::arrangeAtlas(weights, 10), InputError);
+  weights.tile_width = 16384;
+  EXPECT_THROW(package::arrangeAtlas(weights, 1), InputError);
+}
+
+TEST(Package, CountsBytesAsTheRendererKeepsThem) {
+  const test::TemporaryDirectory folder;
+  SamplePackage sample =
+      makeSample({{"albedo", 40, 24, 3, SampleType::kUint8, 8}, {"height", 20, 12, 1, SampleType::kFloat32, 4}});
+  test::writeSample(sample, folder / "package");
+  const Package package = Package::open(folder / "package" / "package.json");
+  EXPECT_EQ(package.bytesInMemory(), 40u * 24 * 3 * 5 + 20u * 12 * (4 + 4) + 5u * 5 * 3 * 4);
+  std::uint64_t bytes = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder.path())) {
+    if (entry.is_regular_file()) bytes += entry.file_size();
+  }
+  EXPECT_EQ(package.bytesOnDisk(), bytes);
+  EXPECT_EQ(package.mapIndex("height"), 1);
+  EXPECT_THROW(package.mapIndex("specular"), InputError);
+}
+
+TEST(Package, MissingDirectoryAndDescriptionAreNamed) {
+  const test::TemporaryDirectory folder;
+  EXPECT_THAT(messageOfOpening(folder / "none"), HasSubstr("none/package.json"));
+  EXPECT_THAT(messageOfOpening(folder.path()), HasSubstr("package.json"));
+  fs::create_directory(folder / "package.json");
+  EXPECT_THAT(messageOfOpening(folder.path()), HasSubstr("package.json"));
+}
+
+TEST(PackageJson, TruncatedAtEveryLengthIsRefused) {
+  const test::TemporaryDirectory folder;
+  SamplePackage sample = makeSample({{}}, 2, 1);
+  test::writeSample(sample, folder.path());
+  const std::string text = readText(folder / "package.json");
+  for (std::size_t length = 0; length + 2 <= text.size(); ++length) {
+    EXPECT_THROW(package::parsePackageJson(text.substr(0, length), "package.json"), InputError) << length;
+  }
+  EXPECT_NO_THROW(package::parsePackageJson(text, "package.json"));
+}
+
+struct Corruption {
+  const char* name;
+  std::function<void(json&)> apply;
+  const char* expected;  // part of the message
+};
+
+class CorruptJson : public testing::TestWithParam<Corruption> {};
+
+TEST_P(CorruptJson, IsRefusedByFileAndField) {
+  const test::TemporaryDirectory folder;
+  SamplePackage sample =
+      makeSample({{"albedo", 40, 24, 3, SampleType::kUint8, 8}, {"normal", 40, 24, 3, SampleType::kUint8, 8}});
+  test::writeSample(sample, folder.path());
+  json document = json::parse(readText(folder / "package.json"));
+  GetParam().apply(document);
+  io::writeTextFile(folder / "package.json", document.dump());
+  const std::string message = messageOfOpening(folder.path());
+  EXPECT_THAT(message, HasSubstr((folder / "package.json").string()));
+  EXPECT_THAT(message, HasSubstr(GetParam().expected));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Fields, CorruptJson,
+    testing::Values(
+        Corruption{"format", [](json& j) { j["format"] = "zip"; }, "format: expected \"facezip-package\""},
+        Corruption{"no_format", [](json& j) { j.erase("format"); }, "format: got no such field"},
+        Corruption{"newer", [](json& j) { j["version"] = 2; },
+                   "version: expected 1, the version that this facezip reads, got 2; update facezip"},
+        Corruption{"older", [](json& j) { j["version"] = 0; }, "version: expected 1"},
+        Corruption{"version_text", [](json& j) { j["version"] = "1"; }, "version: expected an integer"},
+        Corruption{"version_real", [](json& j) { j["version"] = 1.0; }, "version: expected an integer"},
+        Corruption{"array", [](json& j) { j = json::array(); }, "expected an object, got an array"},
+        Corruption{"generator", [](json& j) { j["generator"] = 3; }, "generator: expected a string"},
+        Corruption{"name", [](json& j) { j["name"] = nullptr; }, "name: expected a string"},
+        Corruption{"no_expressions", [](json& j) { j["expressions"] = json::array(); },
+                   "expressions: expected an array of 1"},
+        Corruption{"expressions_text", [](json& j) { j["expressions"] = "a"; }, "expressions: expected an array"},
+        Corruption{"twice", [](json& j) { j["expressions"][1] = "expression_0"; },
+                   "expressions[1]: expected unique expression names"},
+        Corruption{"empty_name", [](json& j) { j["expressions"][0] = ""; }, "expressions[0]"},
+        Corruption{"slash", [](json& j) { j["expressions"][2] = "a/b"; }, "expressions[2]"},
+        Corruption{"dots", [](json& j) { j["expressions"][2] = ".."; }, "expressions[2]"},
+        Corruption{"backslash", [](json& j) { j["expressions"][2] = "a\\b"; }, "expressions[2]"},
+        Corruption{"nul", [](json& j) { j["expressions"][2] = std::string("a\0b", 3); }, "a\\x00b"},
+        Corruption{"long_name", [](json& j) { j["expressions"][2] = std::string(201, 'a'); }, "at most 200 bytes"},
+        Corruption{"differences", [](json& j) { j["differences"] = 9; },
+                   "differences: expected an integer from 1 to 8"},
+        Corruption{"no_differences", [](json& j) { j["differences"] = 0; }, "differences: expected"},
+        Corruption{"fewer_differences", [](json& j) { j["differences"] = 3; }, "weights.scale: expected an array of 3"},
+        Corruption{"weights", [](json& j) { j["weights"] = 1; }, "weights: expected an object"},
+        Corruption{"weight_files", [](json& j) { j["weights"]["files"].push_back("w.png"); },
+                   "weights.files: expected an array of 1"},
+        Corruption{"columns", [](json& j) { j["weights"]["columns"] = 4294967297; },
+                   "weights.columns: expected an integer"},
+        Corruption{"negative", [](json& j) { j["weights"]["rows"] = -1; }, "weights.rows: expected an integer"},
+        Corruption{"too_few_tiles", [](json& j) { j["weights"]["rows"] = 1; }, "tiles for 5 expressions"},
+        Corruption{"wide_atlas", [](json& j) { j["weights"]["columns"] = 16000; }, "16384"},
+        Corruption{"high_atlas", [](json& j) { j["weights"]["rows"] = 16000; }, "16384"},
+        Corruption{"tile", [](json& j) { j["weights"]["tile_width"] = 6; },
+                   "maps[0]: expected 40 x 24 texels to need 6 x 3 cells"},
+        Corruption{"tile_huge", [](json& j) { j["weights"]["tile_width"] = 2147483647; }, "weights.tile_width"},
+        Corruption{"border", [](json& j) { j["weights"]["border"] = 0; }, "weights.border"},
+        Corruption{"weight_scale_nan",
+                   [](json& j) { j["weights"]["scale"][0] = std::numeric_limits<double>::quiet_NaN(); },
+                   "weights.scale[0]: expected a number"},
+        Corruption{"weight_offset", [](json& j) { j["weights"]["offset"][3] = 1e300; }, "weights.offset[3]"},
+        Corruption{"weights_outside", [](json& j) { j["weights"]["files"][0] = "../weights.png"; },
+                   "weights.files[0]: expected a path inside the package"},
+        Corruption{"no_maps", [](json& j) { j["maps"] = json::array(); }, "maps: expected an array of 1"},
+        Corruption{"same_maps", [](json& j) { j["maps"][1]["name"] = "albedo"; },
+                   "maps[1].name: expected unique map names"},
+        Corruption{"map_name", [](json& j) { j["maps"][0]["name"] = "../albedo"; }, "maps[0].name"},
+        Corruption{"width_text", [](json& j) { j["maps"][0]["width"] = "wide"; },
+                   "maps[0].width: expected an integer from 1 to 65536, got \"wide\""},
+        Corruption{"width_zero", [](json& j) { j["maps"][0]["width"] = 0; }, "maps[0].width"},
+        Corruption{"huge_area",
+                   [](json& j) {
+                     j["maps"][0]["width"] = 2147483647;
+                     j["maps"][0]["height"] = 2147483647;
+                   },
+                   "maps[0].width"},
+        Corruption{"channels", [](json& j) { j["maps"][0]["channels"] = 5; }, "maps[0].channels"},
+        Corruption{"sample_type", [](json& j) { j["maps"][1]["sample_type"] = "12-bit"; },
+                   "maps[1].sample_type: expected \"8-bit\""},
+        Corruption{"colour_space", [](json& j) { j["maps"][1]["colour_space"] = "ACES"; }, "maps[1].colour_space"},
+        Corruption{"scale_zero", [](json& j) { j["maps"][0]["weight_scale"] = 0; }, "maps[0].weight_scale"},
+        Corruption{"other_grid", [](json& j) { j["maps"][1]["weight_scale"] = 4; }, "maps[1]: expected"},
+        Corruption{"metric", [](json& j) { j["maps"][0]["metric_weight"] = -1; }, "maps[0].metric_weight"},
+        Corruption{"neutral", [](json& j) { j["maps"][0]["neutral"] = "n.png"; },
+                   "maps[0].neutral: expected an object"},
+        Corruption{"absolute", [](json& j) { j["maps"][0]["neutral"]["file"] = "/etc/x.png"; }, "maps[0].neutral.file"},
+        Corruption{"climbing", [](json& j) { j["maps"][0]["neutral"]["file"] = "albedo/../../x.png"; },
+                   "maps[0].neutral.file"},
+        Corruption{"windows", [](json& j) { j["maps"][0]["neutral"]["file"] = "c:\\x.png"; }, "maps[0].neutral.file"},
+        Corruption{"no_file", [](json& j) { j["maps"][0]["neutral"]["file"] = ""; }, "maps[0].neutral.file"},
+        Corruption{"other_format", [](json& j) { j["maps"][0]["neutral"]["file"] = "albedo/neutral.tif"; },
+                   "a .png file"},
+        Corruption{"difference_count", [](json& j) { j["maps"][0]["differences"].erase(0); },
+                   "maps[0].differences: expected an array of 4"},
+        Corruption{"difference_scale", [](json& j) { j["maps"][0]["differences"][2]["scale"].push_back(1); },
+                   "maps[0].differences[2].scale: expected an array of 3"},
+        Corruption{"no_zero", [](json& j) { j["maps"][0]["differences"][2]["offset"][1] = -7.03; },
+                   "maps[0].differences[2].offset: expected -scale times an integer"},
+        Corruption{"no_scale", [](json& j) { j["maps"][0]["differences"][2]["scale"][1] = 0; },
+                   "maps[0].differences[2].offset"},
+        Corruption{"method", [](json& j) { j["method"] = json::array(); }, "method: expected an object"}),
+    [](const auto& corruption) { return std::string(corruption.param.name); });
+
+TEST(PackageJson, HugeNumbersDeepNestingAndBadTextAreRefused) {
+  const std::string file = "p/package.json";
+  const auto message = [&](const std::string& text) -> std::string {
+    try {
+      package::parsePackageJson(text, file);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    ADD_FAILURE() << "expected an InputError";
+    return "";
+  };
+  EXPECT_THAT(message(R"({"format":"facezip-package","version":1e999})"), HasSubstr(file));
+  EXPECT_THAT(message(R"({"method":)" + std::string(100000, '[')), HasSubstr("nested"));
+  EXPECT_THAT(message("{\"name\":\"\xff\"}"), HasSubstr("byte"));
+  EXPECT_THAT(message("{\"version\":NaN}"), HasSubstr("byte"));
+}
+
+std::vector<std::string> imagesOf(const PackageDescription& description) {
+  std::vector<std::string> files = description.weights.files;
+  for (const PackageMap& map : description.maps) {
+    files.push_back(map.neutral_file);
+    for (const PackageDifference& difference : map.differences) files.push_back(difference.file);
+  }
+  return files;
+}
+
+class CorruptImage : public testing::Test {
+ protected:
+  CorruptImage() {
+    sample_ = makeSample({{"albedo", 40, 24, 3, SampleType::kUint8, 8},
+                          {"detail", 80, 48, 1, SampleType::kUint16, 16},
+                          {"height", 40, 24, 3, SampleType::kFloat32, 8}},
+                         5, 5);
+    test::writeSample(sample_, folder_.path());
+  }
+  /// Runs `damage` on each image in turn, checks that opening names that image, and puts it back.
+  void forEachImage(const std::function<void(const fs::path&)>& damage) {
+    for (const std::string& name : imagesOf(sample_.description)) {
+      const fs::path file = folder_ / name, kept = folder_ / "kept";
+      fs::copy_file(file, kept);
+      damage(file);
+      EXPECT_THAT(messageOfOpening(folder_.path()), HasSubstr(file.string()));
+      fs::remove_all(file);
+      fs::rename(kept, file);
+    }
+    EXPECT_NO_THROW(Package::open(folder_.path()));
+  }
+  test::TemporaryDirectory folder_;
+  SamplePackage sample_;
+};
+
+TEST_F(CorruptImage, MissingIsNamed) {
+  forEachImage([](const fs::path& file) { fs::remove(file); });
+}
+
+TEST_F(CorruptImage, TruncatedIsNamed) {
+  for (const double share : {0.0, 0.01, 0.1, 0.5, 0.9, 0.99}) {
+    forEachImage([share](const fs::path& file) {
+      fs::resize_file(file, static_cast<std::uintmax_t>(share * static_cast<double>(fs::file_size(file))));
+    });
+  }
+  for (const std::uintmax_t cut : {1u, 4u, 11u, 12u, 13u}) {
+    forEachImage([cut](const fs::path& file) { fs::resize_file(file, fs::file_size(file) - cut); });
+  }
+}
+
+TEST_F(CorruptImage, OfAnotherSizeChannelCountOrTypeIsNamed) {
+  const auto rewrite = [](const fs::path& file, const std::function<void(image::ImageShape&)>& change) {
+    image::Image image = image::readImage(file);
+    change(image.shape);
+    image.samples.assign(static_cast<std::size_t>(image.shape.height) * image.shape.rowBytes(), std::byte{0});
+    image::writeImage(file, image);
+  };
+  forEachImage([&](const fs::path& file) { rewrite(file, [](image::ImageShape& shape) { ++shape.width; }); });
+  forEachImage([&](const fs::path& file) { rewrite(file, [](image::ImageShape& shape) { --shape.height; }); });
+  forEachImage([&](const fs::path& file) {
+    rewrite(file, [](image::ImageShape& shape) { shape.channels = shape.channels == 3 ? 4 : 3; });
+  });
+  forEachImage([&](const fs::path& file) {
+    if (file.extension() == ".exr") return fs::resize_file(file, 0);  // an EXR holds no integers of 8 or 16 bits
+    rewrite(file, [](image::ImageShape& shape) {
+      shape.type = shape.type == image::SampleType::kUint8 ? image::SampleType::kUint16 : image::SampleType::kUint8;
+    });
+  });
+}
+
+TEST_F(CorruptImage, TextOrDirectoryInItsPlaceIsNamed) {
+  forEachImage([](const fs::path& file) {
+    io::writeTextFile(file, "not an image, but long enough to be looked into by any reader");
+  });
+  forEachImage([](const fs::path& file) { fs::remove(file), fs::create_directory(file); });
+}
+
+TEST(PackageWriter, RefusesWhatCouldNotBeOpened) {
+  const test::TemporaryDirectory folder;
+  const auto refused = [&](const std::function<void(PackageDescription&)>& change) {
+    PackageDescription description = makeSample().description;
+    change(description);
+    EXPECT_THROW(package::PackageWriter(description, folder.path()), InputError);
+  };
+  refused([](PackageDescription& d) { d.expressions[1] = d.expressions[0]; });
+  refused([](PackageDescription& d) { d.expressions[1] = "a/b"; });
+  refused([](PackageDescription& d) { d.expressions[1] = "\xff"; });
+  refused([](PackageDescription& d) { d.expressions.clear(); });
+  refused([](PackageDescription& d) { d.maps.clear(); });
+  refused([](PackageDescription& d) { d.maps[0].width = 0; });
+  refused([](PackageDescription& d) { d.maps[0].weight_scale = 0; });
+  refused([](PackageDescription& d) { d.maps[0].differences.pop_back(); });
+  refused([](PackageDescription& d) { d.maps[0].differences[0].scale[0] = std::numeric_limits<double>::quiet_NaN(); });
+  refused([](PackageDescription& d) { d.maps[0].differences[0].offset[0] = -0.123; });
+  refused([](PackageDescription& d) { d.method_json = "{"; });
+  refused([](PackageDescription& d) {
+    d.maps[0].width = d.maps[0].height = 65536;
+    d.maps[0].weight_scale = 1;
+  });
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST(PackageWriter, DescriptionComesLastAndAnUnfinishedPackageLeavesNothing) {
+  const test::TemporaryDirectory folder;
+  const SamplePackage sample = makeSample();
+  {
+    io::StagedDirectory staged(folder / "package", io::StagedDirectory::Existing::kReplaceMarked, "package.json");
+    package::PackageWriter writer(sample.description, staged.path());
+    writer.writeNeutralRows(0, sample.neutrals[0], 24);
+    writer.writeWeights(sample.weights);
+    EXPECT_FALSE(fs::exists(staged.path() / "package.json"));
+  }
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST(PackageWriter, TheSameContentsGiveTheSameBytes) {
+  const test::TemporaryDirectory folder;
+  SamplePackage sample = makeSample({{"height", 40, 24, 3, SampleType::kFloat32, 8}});
+  SamplePackage again = sample;
+  test::writeSample(sample, folder / "a", 7);
+  test::writeSample(again, folder / "b", 24);
+  EXPECT_EQ(readText(folder / "a/package.json"), readText(folder / "b/package.json"));
+  for (const std::string& name : imagesOf(sample.description)) {
+    if (fs::path(name).extension() == ".exr") continue;  // OpenImageIO dates EXR headers
+    EXPECT_EQ(readText(folder / "a" / name), readText(folder / "b" / name)) << name;
+  }
+}
+
+}  // namespace
+}  // namespace facezip

@@ -18,9 +18,9 @@ constexpr int kMargin = 5;
 enum Plane : int { kRed, kGreen, kBlue, kHeight, kSpecularPlane, kRoughnessPlane, kPlaneCount };
 
 // How skin answers to its state.
-constexpr float kBloodPerLogArea = -0.70f;  // stretched skin is paler, compressed skin redder
+constexpr float kBloodPerLogArea = -0.90f;  // stretched skin is paler, compressed skin redder
 constexpr float kBloodPerFlush = 0.24f;
-constexpr float kCreaseShading = 0.42f;                                  // log reflectance of a full valley
+constexpr float kCreaseShading = 0.50f;                                  // log reflectance of a full valley
 constexpr std::array<float, 3> kShadowExponent = {0.42f, 0.60f, 0.66f};  // light in folds is red: it went through skin
 constexpr float kShadowFloor = 0.22f;
 constexpr float kDisplacementRange = 0.004f;  // metres from black to white

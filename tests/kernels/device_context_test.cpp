@@ -20,7 +20,8 @@ TEST(DeviceContext, BuffersKeepWhatIsUploaded) {
 
 TEST(DeviceContext, RefusesAllocationsBeyondTheDevice) {
   device::DeviceContext& context = test::testDevice();
-  EXPECT_THROW(context.allocate(context.info().largest_allocation_bytes + 1, CL_MEM_READ_WRITE, "too much"), DeviceError);
+  EXPECT_THROW(context.allocate(context.info().largest_allocation_bytes + 1, CL_MEM_READ_WRITE, "too much"),
+               DeviceError);
 }
 
 TEST(DeviceContext, UnknownKernelFileIsADeviceError) {

@@ -49,13 +49,13 @@ TextureCoefficients makeCoefficients(int masks, int textures, int expressions) {
 
 /// A band on the device with its difference textures, and the same from the reference.
 struct Computed {
-  explicit Computed(const Case& which)
+  explicit Computed(const Case& which, device::KernelVariant variant = device::KernelVariant::kAuto)
       : shape(which.shape),
         band(test::makeBand(shape, 15)),
         masks(test::makeTileMasks(shape, which.masks, which.most_masks, 16)),
         table(makeCoefficients(which.masks, which.textures, shape.expressions)),
         tiles(test::testDevice()),
-        textures(test::testDevice(), table) {
+        textures(test::testDevice(), table, variant) {
     device::DeviceContext& context = test::testDevice();
     tiles.upload(masks);
     const cl::Buffer samples = context.upload(band.samples, "samples");
@@ -122,6 +122,12 @@ TEST_P(DifferenceTexture, EqualsReference) {
                 test::kDifferenceTextureRelative * full_scale)
         << "at " << i;
   }
+}
+
+TEST_P(DifferenceTexture, VariantsHaveTheSameBits) {
+  const Computed wide(GetParam(), device::KernelVariant::kCpu);
+  const Computed narrow(GetParam(), device::KernelVariant::kGpu);
+  EXPECT_EQ(wide.actual, narrow.actual);
 }
 
 TEST_P(DifferenceTexture, RangeCoversTheTexelsUnderAMask) {

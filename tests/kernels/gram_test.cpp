@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <set>
 #include <tuple>
 #include <vector>
@@ -183,14 +184,18 @@ TEST_P(GramVariant, PairsThatAreNotListedAreLeftOut) {
   expectSlot(actual, actual.slots.pair(0), reference::gram(tiles, 2, 1, 0, 2));
 }
 
-/// Some tens of runs, two launches over blocks: N = 128 has 528 blocks of 64 bytes, so 64 MiB hold 1985 rows.
+/// Two runs and two launches over blocks: N = 128 has 528 blocks of 64 bytes, so 64 MiB hold 1985 rows.
 TEST_P(GramVariant, ManyRunsAndLaunches) {
   if (test::smallSizesOnly()) GTEST_SKIP() << "small sizes only";
-  const BandShape shape{4096, 16, 1, 128, SampleType::kUint8};
+  const BandShape shape{1400, 16, 1, 128, SampleType::kUint8};
   const int mask_count = 150;
-  const TileMasks masks = test::makeTileMasks(shape, mask_count, 10, 13);
+  const TileMasks masks = test::makeTileMasks(shape, mask_count, 16, 13);
   const GramSlots slots = slotsOf({masks}, mask_count);
-  ASSERT_GT((masks.mask_index.size() * 4) * 528 * 64, GramAccumulator::kLargestPartialBytes) << "one launch only";
+  DeviceTiles tiles_on_device(test::testDevice());
+  tiles_on_device.upload(masks);
+  const GramPlan plan = planGram(tiles_on_device, slots, PairSlots(slots), 0, std::numeric_limits<std::size_t>::max());
+  ASSERT_EQ(plan.runs(), 2u);
+  ASSERT_GT(plan.rows() * 528 * 64, GramAccumulator::kLargestPartialBytes) << "one launch only";
   const test::SyntheticBand band = test::makeBand(shape, 14);
   GramAccumulator accumulator(test::testDevice(), slots, shape.expressions, GetParam());
   addBand(accumulator, band, masks, 1.0);
@@ -212,6 +217,30 @@ TEST_P(GramVariant, RefusesABufferThatIsTooSmall) {
       context.allocate(differenceBufferBytes(shape, masks.tiles.size()) - 1, CL_MEM_READ_WRITE, "differences");
   GramAccumulator accumulator(context, slotsOf({masks}, 3), 2, GetParam());
   EXPECT_THROW(accumulator.add(tiles, small, shape, 1.0), DeviceError);
+}
+
+/// What does not fit into a launch goes into the next: every tile is in one plan, whole runs at a time.
+TEST(GramPlan, SplitsAtTheLimitOfRows) {
+  const BandShape shape{1024, 64, 1, 2, SampleType::kUint8};
+  const TileMasks masks = test::makeTileMasks(shape, 10, 4, 17);
+  const GramSlots slots = slotsOf({masks}, 10);
+  DeviceTiles tiles(test::testDevice());
+  tiles.upload(masks);
+  const std::size_t all = planGram(tiles, slots, PairSlots(slots), 0, std::numeric_limits<std::size_t>::max()).rows();
+  std::size_t rows = 0;
+  int plans = 0;
+  for (std::size_t tile = 0; tile < tiles.tileCount(); ++plans) {
+    const GramPlan plan = planGram(tiles, slots, PairSlots(slots), tile, all / 2);
+    ASSERT_EQ(plan.first_tile, tile);
+    ASSERT_GT(plan.tile_count, 0u);
+    EXPECT_TRUE(plan.rows() <= all / 2 || plan.runs() == 1);
+    EXPECT_EQ(plan.touched_rows.size(), plan.rows());
+    EXPECT_EQ(plan.run_begin.back(), static_cast<int>(tile + plan.tile_count));
+    rows += plan.rows();
+    tile += plan.tile_count;
+  }
+  EXPECT_GT(plans, 1);
+  EXPECT_EQ(rows, all);
 }
 
 INSTANTIATE_TEST_SUITE_P(Variants, GramVariant, testing::Values(KernelVariant::kCpu, KernelVariant::kGpu));

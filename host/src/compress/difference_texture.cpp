@@ -12,15 +12,20 @@
 namespace facezip::compress {
 namespace {
 
-/// K x C x N, with N rounded up to 4 by zeros: the kernel takes four expressions at a time.
-std::vector<float> paddedCoefficients(const TextureCoefficients& table) {
-  const auto n_count = static_cast<std::size_t>(table.expressions);
-  const std::size_t padded = device::roundUp(n_count, 4);
-  const auto rows = static_cast<std::size_t>(table.masks) * static_cast<std::size_t>(table.textures);
-  assert(table.values.size() == rows * n_count);
-  std::vector<float> result(rows * padded, 0.0f);
-  for (std::size_t row = 0; row < rows; ++row) {
-    std::copy_n(table.values.data() + row * n_count, n_count, result.data() + row * padded);
+/// The table as the kernel reads it: K x N x C, with N rounded up to 2 by zeros (two expressions at a time).
+std::vector<float> kernelCoefficients(const TextureCoefficients& table) {
+  const auto textures = static_cast<std::size_t>(table.textures);
+  const auto expressions = static_cast<std::size_t>(table.expressions);
+  const auto masks = static_cast<std::size_t>(table.masks);
+  const std::size_t padded = device::roundUp(expressions, 2);
+  assert(table.values.size() == masks * textures * expressions);
+  std::vector<float> result(masks * padded * textures, 0.0f);
+  for (std::size_t k = 0; k < masks; ++k) {
+    for (std::size_t i = 0; i < textures; ++i) {
+      for (std::size_t n = 0; n < expressions; ++n) {
+        result[(k * padded + n) * textures + i] = table.values[(k * textures + i) * expressions + n];
+      }
+    }
   }
   return result;
 }
@@ -29,11 +34,13 @@ std::string channelDefines(const BandShape& shape) { return fmt::format("-D CHAN
 
 }  // namespace
 
-DifferenceTextures::DifferenceTextures(device::DeviceContext& context, const TextureCoefficients& coefficients)
+DifferenceTextures::DifferenceTextures(device::DeviceContext& context, const TextureCoefficients& coefficients,
+                                       device::KernelVariant variant)
     : context_(context),
+      variant_(context.resolve(variant)),
       textures_count_(coefficients.textures),
       expressions_(coefficients.expressions),
-      coefficients_(context.upload(paddedCoefficients(coefficients), "coefficients of the difference textures")),
+      coefficients_(context.upload(kernelCoefficients(coefficients), "coefficients of the difference textures")),
       textures_(context, "difference textures"),
       ranges_(context, "ranges of the difference textures"),
       encoding_(context, "encoding of the difference textures", CL_MEM_READ_ONLY),
@@ -52,8 +59,11 @@ const cl::Buffer& DifferenceTextures::compute(const DeviceTiles& tiles, const cl
   device::requireBytes(context_, differences, differenceBufferBytes(shape, tiles.tileCount()), "differences of a band");
   textures_.reserve(textureBytes(tiles, shape));
   if (tiles.tileCount() == 0) return textures_.buffer();
-  cl::Kernel kernel = context_.kernel("difference_texture.cl", "difference_texture",
-                                      fmt::format("{} -D TEXTURES={}", differenceDefines(shape), textures_count_));
+  // Sixteen texels fill the registers of a CPU; four keep to those that a GPU gives a work-item.
+  const std::size_t width = variant_ == device::KernelVariant::kGpu ? 4 : 16;
+  cl::Kernel kernel =
+      context_.kernel("difference_texture.cl", "difference_texture",
+                      fmt::format("{} -D TEXTURES={} -D WIDTH={}", differenceDefines(shape), textures_count_, width));
   kernel.setArg(0, tiles.maskBegin());
   kernel.setArg(1, tiles.maskIndex());
   kernel.setArg(2, tiles.maskWeights());
@@ -61,8 +71,8 @@ const cl::Buffer& DifferenceTextures::compute(const DeviceTiles& tiles, const cl
   kernel.setArg(4, differences);
   kernel.setArg(5, textures_.buffer());
   kernel.setArg(6, static_cast<cl_int>(expressions_));
-  context_.run(kernel, cl::NDRange(kTileSide, static_cast<std::size_t>(textures_count_), tiles.tileCount()),
-               cl::NDRange(context_.workGroupSize(kernel, kTileSide), 1, 1));
+  const std::size_t items = kTileTexels / width;
+  context_.run(kernel, cl::NDRange(items, tiles.tileCount()), cl::NDRange(context_.workGroupSize(kernel, items), 1));
   return textures_.buffer();
 }
 

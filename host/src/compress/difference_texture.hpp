@@ -38,7 +38,9 @@ struct TextureEncoding {
 class DifferenceTextures {
  public:
   /// Uploads the table. Throws DeviceError.
-  DifferenceTextures(device::DeviceContext& context, const TextureCoefficients& coefficients);
+  /// variant  how many texels a work-item takes; the bits of the result do not depend on it
+  DifferenceTextures(device::DeviceContext& context, const TextureCoefficients& coefficients,
+                     device::KernelVariant variant = device::KernelVariant::kAuto);
 
   /// Computes the textures of a band: [tile][texture][channel][256] float, units of 1/255; 0 where no mask is active.
   /// Returns the buffer, which the next call overwrites. Does not wait.
@@ -60,6 +62,7 @@ class DifferenceTextures {
   void clear(const BandShape& shape);
 
   device::DeviceContext& context_;
+  device::KernelVariant variant_;
   int textures_count_;
   int expressions_;
   cl::Buffer coefficients_;

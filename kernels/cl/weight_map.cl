@@ -1,7 +1,7 @@
 // weight_map.cl - weights of the difference textures, for every expression and cell of the weight grid (FaceZip Eq. 6)
 //   W_in(cell) = sum over masks k that give texture i to expression n of M_k(cell)
 //
-// NDRange  global {roundUp(cells / 16 rounded up, WGS), blocks}, local {WGS, 1}: work-item = 16 cells and 16 expressions,
+// NDRange  global {roundUp(cells / 16, WGS), blocks}, local {WGS, 1}: work-item = 16 cells and 16 expressions,
 //          its lanes. With C = 4 it writes a line of 64 bytes per expression; a cell at a time it would touch 16 lines
 //          for 4 bytes each, often a power of two apart, which took four to five times as long on PoCL
 // Buffers  cell_begin    in   [cells + 1] int             entries of a cell, counted from `first_entry`

@@ -9,6 +9,7 @@
 
 #include "blend/band_blender.hpp"
 #include "blend/names.hpp"
+#include "image/image_file.hpp"
 #include "io/staged_directory.hpp"
 #include "reference/blend.hpp"
 #include "reference/weight_blend.hpp"
@@ -234,6 +235,44 @@ TEST(Blender, DamageInsideAnImageNamesTheFile) {
       EXPECT_THAT(error.what(), HasSubstr(name));
     }
   }
+}
+
+image::Image grayRows(int width, int height, int channels, const std::vector<int>& row) {
+  image::Image image{{width, height, channels, image::SampleType::kUint8}, {}};
+  for (int y = 0; y < height; ++y) {
+    for (const int code : row) image.samples.push_back(static_cast<std::byte>(code));
+  }
+  return image;
+}
+
+// The worked example of docs/package_format.md: its JSON, images and numbers, without facezip's writer.
+TEST(PackageFormat, WorkedExampleGivesItsTestVectors) {
+  const test::TemporaryDirectory folder;
+  io::createDirectories(folder / "albedo");
+  io::writeTextFile(folder / "package.json", R"({
+    "format": "facezip-package", "version": 1, "generator": "by hand", "name": "example",
+    "expressions": ["smile", "jawOpen"], "differences": 2,
+    "weights": {"files": ["weights.png"], "columns": 2, "rows": 1, "tile_width": 2, "tile_height": 1, "border": 1,
+                "scale": [0.00392156862745098, 0.0078125], "offset": [0, -1]},
+    "maps": [{"name": "albedo", "width": 16, "height": 8, "channels": 1, "sample_type": "8-bit", "colour_space": "sRGB",
+              "weight_scale": 8, "metric_weight": 1, "neutral": {"file": "albedo/neutral.png"},
+              "differences": [{"file": "albedo/difference_0.png", "scale": [0.5], "offset": [-64]},
+                              {"file": "albedo/difference_1.png", "scale": [1.0], "offset": [-128]}]}],
+    "method": {}})");
+  image::writeImage(folder / "weights.png",
+                    grayRows(8, 3, 2, {255, 128, 255, 128, 0, 128, 0, 128, 0, 192, 0, 192, 255, 64, 255, 64}));
+  std::vector<int> neutral;
+  for (int x = 0; x < 16; ++x) neutral.push_back(100 + x);
+  image::writeImage(folder / "albedo/neutral.png", grayRows(16, 8, 1, neutral));
+  image::writeImage(folder / "albedo/difference_0.png", grayRows(16, 8, 1, std::vector<int>(16, 148)));
+  image::writeImage(folder / "albedo/difference_1.png", grayRows(16, 8, 1, std::vector<int>(16, 118)));
+  const Package package = Package::open(folder.path());
+  Blender blender(package, testDevice());
+  const std::vector<int> vector = {100, 101, 102, 103, 105, 108, 111, 114, 116, 119, 122, 125, 127, 128, 129, 130};
+  EXPECT_EQ(blendFrame(blender, package, 0, {0.5f, 1.0f}), grayRows(16, 8, 1, vector).samples);
+  EXPECT_EQ(blendFrame(blender, package, 0, {0.0f, 0.0f}), grayRows(16, 8, 1, neutral).samples);
+  EXPECT_EQ(blendFrame(blender, package, 0, {100.0f, 0.0f})[0], std::byte{255});
+  EXPECT_EQ(blendFrame(blender, package, 0, {-100.0f, 0.0f})[0], std::byte{0});
 }
 
 Package packageOf(const test::TemporaryDirectory& folder, const std::vector<std::string>& expressions) {

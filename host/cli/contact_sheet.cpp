@@ -15,7 +15,7 @@ namespace {
 constexpr int kTile = 256;
 constexpr int kGap = 6;
 constexpr int kLabel = 22;
-constexpr int kRowsOfExpressions = 6;
+constexpr int kShownExpressions = 8;
 
 /// Reads an image as RGB at the size of a tile.
 OIIO::ImageBuf tile(const fs::path& file) {
@@ -65,21 +65,23 @@ void writeContactSheet(const fs::path& file, const Capture& capture, const Packa
   const CaptureMap& map = capture.maps.front();
   const PackageMap& packed = package.maps()[static_cast<std::size_t>(package.mapIndex(map.name))];
   const int textures = package.differences();
-  const int rows = std::min<int>(kRowsOfExpressions, static_cast<int>(capture.expressions.size()));
-  Sheet sheet(std::max(3, textures + 1), rows + 1);
+  const int shown = std::min<int>(kShownExpressions, static_cast<int>(capture.expressions.size()));
+  Sheet sheet(std::max(6, textures + 1), 1 + (shown + 1) / 2);
   sheet.place(0, 0, tile(package.directory() / packed.neutral_file), "neutral");
   for (int i = 0; i < textures; ++i) {
     sheet.place(i + 1, 0, tile(package.directory() / packed.differences[static_cast<std::size_t>(i)].file),
                 fmt::format("difference texture {}", i));
   }
-  for (int row = 0; row < rows; ++row) {
-    const std::size_t n = static_cast<std::size_t>(row) * capture.expressions.size() / static_cast<std::size_t>(rows);
+  for (int i = 0; i < shown; ++i) {
+    const std::size_t n = static_cast<std::size_t>(i) * capture.expressions.size() / static_cast<std::size_t>(shown);
     const std::string& name = capture.expressions[n];
     const OIIO::ImageBuf original = tile(map.expressions[n]);
     const OIIO::ImageBuf restored = tile(decoded / map.name / (name + ".png"));
-    sheet.place(0, row + 1, original, name);
-    sheet.place(1, row + 1, restored, "from the package");
-    sheet.place(2, row + 1, amplifiedDifference(original, restored), "difference x 8");
+    const int column = i % 2 * 3;  // two expressions in a row
+    const int row = 1 + i / 2;
+    sheet.place(column, row, original, name);
+    sheet.place(column + 1, row, restored, "from the package");
+    sheet.place(column + 2, row, amplifiedDifference(original, restored), "difference x 8");
   }
   sheet.write(file);
 }

@@ -8,8 +8,8 @@
 
 namespace facezip::cli {
 
-/// Writes a PNG with a row for each of a few expressions of the capture's first map: captured, decoded, and their
-/// difference times 8 around grey; and a row with the neutral and the difference textures.
+/// Writes a PNG: a row with the neutral and the difference textures of the capture's first map, then a few expressions as
+/// captured, as decoded, and their difference times 8 around grey.
 /// decoded  directory that reconstruct() wrote
 void writeContactSheet(const std::filesystem::path& file, const Capture& capture, const Package& package,
                        const std::filesystem::path& decoded);

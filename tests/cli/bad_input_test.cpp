@@ -1,0 +1,248 @@
+// Every bad input: one clear error with file, item, expected, got and cure, the right exit code, nothing left behind.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+
+#include "exit_codes.hpp"
+#include "facezip/geometry/obj_io.hpp"
+#include "io/staged_directory.hpp"
+#include "run_command.hpp"
+#include "small_capture.hpp"
+#include "temporary_directory.hpp"
+
+namespace facezip {
+namespace {
+namespace fs = std::filesystem;
+using test::quoted;
+using test::runFacezip;
+using testing::HasSubstr;
+
+constexpr const char* kOptions = " --unit m --mask-radius 5cm --restarts 3 --cluster-restarts 3";
+
+/// A capture to break, and a place for the package.
+class BadInput : public testing::Test {
+ protected:
+  void SetUp() override { test::writeSmallCapture(capture(), {.expressions = 3, .width = 48, .height = 48}); }
+
+  fs::path capture() const { return folder_ / "capture"; }
+  fs::path package() const { return folder_ / "package"; }
+
+  test::CommandResult compress(const std::string& options = kOptions, const std::string& before = "") const {
+    return runFacezip("compress " + quoted(capture()) + " --output " + quoted(package()) + " " + options, before);
+  }
+
+  /// Compressing fails with `exit_code`, the message holds each of `parts` and nothing is left.
+  void expectFailure(int exit_code, const std::vector<std::string>& parts, const std::string& options = kOptions,
+                     const std::string& before = "") const {
+    const auto files = test::filesBelow(folder_.path());
+    const test::CommandResult result = compress(options, before);
+    EXPECT_EQ(result.exit_code, exit_code) << result.error;
+    for (const std::string& part : parts) EXPECT_THAT(result.error, HasSubstr(part));
+    EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 1) << "one line:\n" << result.error;
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(test::filesBelow(folder_.path()), files) << "something was left behind";
+  }
+
+  void writeTexture(const std::string& name, const image::ImageShape& shape) const {
+    image::writeImage(capture() / "albedo" / name, test::makeImage(shape, [](int, int, int) { return 9.0; }));
+  }
+
+  const test::TemporaryDirectory folder_;
+};
+
+TEST_F(BadInput, GoodInputIsTaken) { EXPECT_EQ(compress().exit_code, cli::kExitSuccess); }
+
+TEST_F(BadInput, MissingNeutralTexture) {
+  fs::remove(capture() / "albedo/neutral.png");
+  expectFailure(cli::kExitInput, {"albedo/neutral.png", "no such file"});
+}
+
+TEST_F(BadInput, MissingNeutralMesh) {
+  fs::remove(capture() / "neutral.obj");
+  expectFailure(cli::kExitInput, {"neutral.obj", "no such file"});
+}
+
+TEST_F(BadInput, TextureOfAnotherSize) {
+  writeTexture("e01.png", {32, 48, 3, image::SampleType::kUint8});
+  expectFailure(cli::kExitInput, {"e01.png", "48 x 48", "32 x 48", "resize"});
+}
+
+TEST_F(BadInput, TextureOfAnotherChannelCount) {
+  writeTexture("e01.png", {48, 48, 1, image::SampleType::kUint8});
+  expectFailure(cli::kExitInput, {"e01.png", "3 channels", "1 channel,"});
+}
+
+TEST_F(BadInput, UnreadableTexture) {
+  io::writeTextFile(capture() / "albedo/e01.png", "not a picture");
+  expectFailure(cli::kExitInput, {"e01.png"});
+}
+
+TEST_F(BadInput, TruncatedTexture) {
+  fs::resize_file(capture() / "albedo/e02.png", fs::file_size(capture() / "albedo/e02.png") / 2);
+  expectFailure(cli::kExitInput, {"e02.png", "truncated"});
+}
+
+TEST_F(BadInput, NaNInAFloatTexture) {
+  fs::remove_all(capture());
+  test::writeSmallCapture(
+      capture(),
+      {.expressions = 2, .width = 48, .height = 48, .type = image::SampleType::kFloat32, .extension = "exr"});
+  image::Image image = image::readImage(capture() / "albedo/e01.exr");
+  reinterpret_cast<float*>(image.samples.data())[(30 * 48 + 7) * 3] = std::numeric_limits<float>::quiet_NaN();
+  image::writeImage(capture() / "albedo/e01.exr", image);
+  expectFailure(cli::kExitInput, {"e01.exr", "row 30, column 7", "NaN"});
+}
+
+TEST_F(BadInput, MeshOfAnotherTopology) {
+  fs::create_directory(capture() / "expressions");
+  geometry::writeObj(capture() / "expressions/e01.obj", test::gridMesh(20));
+  expectFailure(cli::kExitInput, {"e01.obj", "441", "400"});
+}
+
+TEST_F(BadInput, MeshWithoutUvs) {
+  geometry::TriangleMesh mesh = test::gridMesh(21);
+  mesh.uvs.resize(0, 2);
+  mesh.uv_triangles.resize(0, 3);
+  geometry::writeObj(capture() / "neutral.obj", mesh);
+  expectFailure(cli::kExitInput, {"neutral.obj", "UV"});
+}
+
+TEST_F(BadInput, UvsOutsideTheImage) {
+  geometry::TriangleMesh mesh = test::gridMesh(21);
+  mesh.uvs(17, 0) = 1.25;
+  geometry::writeObj(capture() / "neutral.obj", mesh);
+  expectFailure(cli::kExitInput, {"neutral.obj", "1.25", "[0"});
+}
+
+TEST_F(BadInput, MeshThatIsNoMesh) {
+  io::writeTextFile(capture() / "neutral.obj", "v 0 0\nf 1 2 3\n");
+  expectFailure(cli::kExitInput, {"neutral.obj"});
+}
+
+TEST_F(BadInput, EmptyRegion) {
+  io::writeTextFile(capture() / "face_region.txt", "# nothing\n");
+  expectFailure(cli::kExitInput, {"face_region.txt"});
+  fs::remove(capture() / "face_region.txt");
+  image::writeImage(capture() / "coverage.png",
+                    test::makeImage({16, 16, 1, image::SampleType::kUint8}, [](int, int, int) { return 0.0; }));
+  expectFailure(cli::kExitInput, {"coverage.png", "empty region"});
+}
+
+TEST_F(BadInput, RegionWithAWrongIndex) {
+  io::writeTextFile(capture() / "face_region.txt", "0\n1\n99999\n");
+  expectFailure(cli::kExitInput, {"face_region.txt", "99999", "3"});
+}
+
+TEST_F(BadInput, FewerSamplesThanAskedFor) { expectFailure(cli::kExitInput, {"1000", "441"}, "--unit m --masks 1000"); }
+
+TEST_F(BadInput, RadiusLargerThanTheFace) { expectFailure(cli::kExitInput, {"radius"}, "--unit m --mask-radius 2m"); }
+
+TEST_F(BadInput, NoExpression) {
+  for (int n = 0; n < 3; ++n) fs::remove(capture() / "albedo" / (test::smallExpressionName(n) + ".png"));
+  expectFailure(cli::kExitInput, {"at least one expression"});
+}
+
+TEST_F(BadInput, OneExpressionIsTakenAndSaid) {
+  for (int n = 1; n < 3; ++n) fs::remove(capture() / "albedo" / (test::smallExpressionName(n) + ".png"));
+  const test::CommandResult result = compress();
+  EXPECT_EQ(result.exit_code, cli::kExitSuccess);
+  EXPECT_THAT(result.error, HasSubstr("1 expression: each gets a difference texture of its own"));
+}
+
+TEST_F(BadInput, TwoExpressionsWithTheSameName) {
+  io::writeTextFile(capture() / "capture.json", R"({"expressions": ["e00", "e01", "e00"]})");
+  expectFailure(cli::kExitInput, {"capture.json", "e00", "twice"});
+}
+
+TEST_F(BadInput, UnitThatCannotBeGuessed) {
+  geometry::TriangleMesh mesh = test::gridMesh(21);
+  mesh.positions *= 7.0;  // 1.4 m wide, or 1.4 of anything else
+  geometry::writeObj(capture() / "neutral.obj", mesh);
+  expectFailure(cli::kExitInput, {"neutral.obj", "--unit"}, "");
+}
+
+TEST_F(BadInput, UnknownUnitLengthAndSize) {
+  expectFailure(cli::kExitInput, {"furlong"}, "--unit furlong");
+  expectFailure(cli::kExitInput, {"3parsec"}, "--unit m --mask-radius 3parsec");
+  expectFailure(cli::kExitInput, {"--memory", "lots"}, "--unit m --memory lots");
+  expectFailure(cli::kExitInput, {"--memory", "10 MiB"}, "--unit m --mask-radius 5cm --memory 10MiB");
+}
+
+TEST_F(BadInput, NoOpenClDevice) {
+  fs::create_directory(folder_ / "no-drivers");
+  expectFailure(cli::kExitDevice, {"no OpenCL device found", "install"}, kOptions,
+                "OCL_ICD_VENDORS=" + quoted(folder_ / "no-drivers") + "/");
+}
+
+TEST_F(BadInput, UnknownDevice) {
+  EXPECT_EQ(compress(std::string(kOptions) + " --device toaster").exit_code, cli::kExitDevice);
+}
+
+TEST_F(BadInput, DeviceWithoutMemoryForABand) {
+  const std::string simulator = FACEZIP_OCLGRIND;
+  if (simulator.empty() || simulator.find("NOTFOUND") != std::string::npos)
+    GTEST_SKIP() << "needs oclgrind, whose device has 128 MiB";
+  fs::remove_all(capture());
+  test::writeSmallCapture(capture(), {.expressions = 60, .width = 16384, .height = 16});
+  expectFailure(cli::kExitDevice, {"band of 16 rows", "--device"},
+                std::string(kOptions) + " --device oclgrind --memory 8GiB", quoted(fs::path(simulator)));
+}
+
+TEST_F(BadInput, OutputThatCannotBeWritten) {
+  const test::CommandResult result =
+      runFacezip("compress " + quoted(capture()) + " --output /proc/facezip/package" + kOptions);
+  EXPECT_EQ(result.exit_code, cli::kExitOutput) << result.error;
+  EXPECT_THAT(result.error, HasSubstr("/proc/facezip"));
+}
+
+TEST_F(BadInput, OutputThatIsSomethingElse) {
+  fs::create_directory(package());
+  io::writeTextFile(package() / "holiday.txt", "precious");
+  expectFailure(cli::kExitOutput, {"package", "not empty"});
+}
+
+TEST_F(BadInput, CommandLine) {
+  EXPECT_EQ(runFacezip("").exit_code, cli::kExitUsage);
+  EXPECT_EQ(runFacezip("squeeze").exit_code, cli::kExitUsage);
+  EXPECT_EQ(runFacezip("compress").exit_code, cli::kExitUsage);
+  EXPECT_EQ(compress("--masks 5 --mask-radius 3cm").exit_code, cli::kExitUsage);
+  EXPECT_EQ(compress("--method magic").exit_code, cli::kExitUsage);
+}
+
+/// A package to break: every file damaged in every way is refused by every command that reads it.
+TEST_F(BadInput, DamagedPackages) {
+  ASSERT_EQ(compress().exit_code, cli::kExitSuccess);
+  const fs::path good = folder_ / "good";
+  fs::rename(package(), good);
+  const std::vector<std::function<void(const fs::path&)>> damages = {
+      [](const fs::path& file) { fs::remove(file); }, [](const fs::path& file) { fs::resize_file(file, 0); },
+      [](const fs::path& file) { fs::resize_file(file, fs::file_size(file) / 2); },
+      [](const fs::path& file) { io::writeTextFile(file, "something else"); }};
+  for (const char* file : {"package.json", "weights.png", "albedo/neutral.png", "albedo/difference_2.png"}) {
+    for (std::size_t d = 0; d < damages.size(); ++d) {
+      fs::remove_all(package());
+      fs::copy(good, package(), fs::copy_options::recursive);
+      damages[d](package() / file);
+      const test::CommandResult result =
+          runFacezip("reconstruct " + quoted(package()) + " --output " + quoted(folder_ / "out"));
+      EXPECT_EQ(result.exit_code, cli::kExitInput) << file << ", damage " << d << ": " << result.error;
+      EXPECT_THAT(result.error, HasSubstr(fs::path(file).filename().string())) << "damage " << d;
+      EXPECT_FALSE(fs::exists(folder_ / "out"));
+    }
+  }
+}
+
+TEST_F(BadInput, UnknownExpressionNamesTheNearest) {
+  ASSERT_EQ(compress().exit_code, cli::kExitSuccess);
+  const test::CommandResult result =
+      runFacezip("blend " + quoted(package()) + " --weights E02x=1 --output " + quoted(folder_ / "frame.png"));
+  EXPECT_EQ(result.exit_code, cli::kExitInput);
+  EXPECT_THAT(result.error, HasSubstr("e02"));
+  EXPECT_FALSE(fs::exists(folder_ / "frame.png"));
+}
+
+}  // namespace
+}  // namespace facezip

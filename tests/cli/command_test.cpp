@@ -1,0 +1,170 @@
+// The commands as users script them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "exit_codes.hpp"
+#include "image/image_file.hpp"
+#include "io/staged_directory.hpp"
+#include "run_command.hpp"
+#include "small_capture.hpp"
+#include "temporary_directory.hpp"
+
+namespace facezip {
+namespace {
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::quoted;
+using test::runFacezip;
+using testing::HasSubstr;
+
+/// A compressed small capture of two maps, made once.
+class Command : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new test::TemporaryDirectory;
+    test::writeSmallCapture(capture(), {.expressions = 6, .maps = {"albedo", "normal"}});
+    compressed_ = new test::CommandResult(
+        runFacezip("compress " + quoted(capture()) + " --output " + quoted(package()) +
+                   " --unit m --mask-radius 5cm --restarts 20 --report " + quoted(*folder_ / "compress.json")));
+  }
+  static void TearDownTestSuite() {
+    delete compressed_;
+    delete folder_;
+  }
+  static fs::path capture() { return *folder_ / "capture"; }
+  static fs::path package() { return *folder_ / "package"; }
+  static json readJson(const fs::path& file) { return json::parse(std::ifstream(file)); }
+
+  static test::TemporaryDirectory* folder_;
+  static test::CommandResult* compressed_;
+};
+
+test::TemporaryDirectory* Command::folder_ = nullptr;
+test::CommandResult* Command::compressed_ = nullptr;
+
+TEST_F(Command, CompressIsQuietInAPipeAndReports) {
+  EXPECT_EQ(compressed_->exit_code, cli::kExitSuccess);
+  EXPECT_EQ(compressed_->error, "");
+  EXPECT_THAT(compressed_->out, HasSubstr("masks"));
+  const json report = readJson(*folder_ / "compress.json");
+  EXPECT_EQ(report["facezip_report"], "compress");
+  EXPECT_GT(report["masks"].get<int>(), 3);
+  EXPECT_GT(report["seconds"]["total"].get<double>(), 0.0);
+  EXPECT_EQ(report["permutation"]["restart_costs"].size(), 20u);
+}
+
+TEST_F(Command, ReconstructWritesEveryMapOfTheNamedExpressions) {
+  const test::TemporaryDirectory out;
+  EXPECT_EQ(runFacezip("reconstruct " + quoted(package()) + " --output " + quoted(out / "r") +
+                       " --expression e01 --expression e04")
+                .exit_code,
+            0);
+  EXPECT_EQ(test::filesBelow(out / "r"), (std::set<std::string>{"albedo", "albedo/e01.png", "albedo/e04.png", "normal",
+                                                                "normal/e01.png", "normal/e04.png"}));
+  EXPECT_EQ(runFacezip("reconstruct " + quoted(package()) + " --output " + quoted(out / "all")).exit_code, 0);
+  EXPECT_EQ(test::filesBelow(out / "all").size(), 2u + 12u);
+}
+
+TEST_F(Command, BlendOfOneExpressionIsItsReconstruction) {
+  const test::TemporaryDirectory out;
+  ASSERT_EQ(
+      runFacezip("reconstruct " + quoted(package()) + " --output " + quoted(out / "r") + " --expression e02").exit_code,
+      0);
+  ASSERT_EQ(
+      runFacezip("blend " + quoted(package()) + " --weights e02=1 --output " + quoted(out / "frame.png")).exit_code, 0);
+  EXPECT_EQ(image::readImage(out / "frame.albedo.png").samples, image::readImage(out / "r/albedo/e02.png").samples);
+  EXPECT_EQ(image::readImage(out / "frame.normal.png").samples, image::readImage(out / "r/normal/e02.png").samples);
+}
+
+TEST_F(Command, BlendOfNothingIsTheNeutral) {
+  const test::TemporaryDirectory out;
+  ASSERT_EQ(runFacezip("blend " + quoted(package()) + " --weights e00=0 --output " + quoted(out / "{map}/frame.png"))
+                .exit_code,
+            0);
+  EXPECT_EQ(image::readImage(out / "albedo/frame.png").samples,
+            image::readImage(capture() / "albedo/neutral.png").samples);
+}
+
+TEST_F(Command, AnimationWritesAFramePerRow) {
+  const test::TemporaryDirectory out;
+  io::writeTextFile(out / "clip.csv", "frame,e03,e01\n0,0,0\n1,0.5,0\n2,0,1\n");
+  ASSERT_EQ(runFacezip("blend " + quoted(package()) + " --animation " + quoted(out / "clip.csv") + " --output " +
+                       quoted(out / "f/{map}_%04d.png"))
+                .exit_code,
+            0);
+  EXPECT_EQ(test::filesBelow(out / "f").size(), 6u);
+  EXPECT_EQ(image::readImage(out / "f/albedo_0000.png").samples,
+            image::readImage(capture() / "albedo/neutral.png").samples);
+  ASSERT_EQ(runFacezip("blend " + quoted(package()) + " --weights e01=1 --output " + quoted(out / "one.png")).exit_code,
+            0);
+  EXPECT_EQ(image::readImage(out / "f/albedo_0002.png").samples, image::readImage(out / "one.albedo.png").samples);
+  EXPECT_EQ(runFacezip("blend " + quoted(package()) + " --animation " + quoted(out / "clip.csv") + " --output " +
+                       quoted(out / "same.png"))
+                .exit_code,
+            cli::kExitInput);
+}
+
+TEST_F(Command, EvaluateReportsWhatTheSchemaSays) {
+  const test::TemporaryDirectory out;
+  const test::CommandResult result =
+      runFacezip("evaluate " + quoted(capture()) + " " + quoted(package()) + " --report " + quoted(out / "e.json"));
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  EXPECT_THAT(result.out, HasSubstr("PCA(8)"));
+  const json report = readJson(out / "e.json");
+  for (const char* map : {"albedo", "normal"}) {
+    for (const char* method : {"package", "pca4", "pca8", "no_permutation"}) {
+      EXPECT_GT(report["maps"][map]["rmse"][method].get<double>(), 0.0);
+      for (int n = 0; n < 6; ++n) {
+        EXPECT_GE(report["maps"][map]["per_expression"][test::smallExpressionName(n)][method].get<double>(), 0.0);
+      }
+    }
+  }
+  // Two maps of 80 x 80 x 3 bytes: 5 textures each, and 6 weight maps of 10 x 10 x 4 bytes that the maps share.
+  EXPECT_EQ(report["bytes"]["package"].get<int>(), 2 * 5 * 80 * 80 * 3 + 6 * 10 * 10 * 4);
+  EXPECT_EQ(report["bytes"]["pca4"].get<int>(), 2 * 5 * 80 * 80 * 3);
+  EXPECT_EQ(report["bytes"]["raw"].get<int>(), 2 * 7 * 80 * 80 * 3);
+  EXPECT_GT(report["seconds"]["total"].get<double>(), 0.0);
+
+  ASSERT_EQ(runFacezip("evaluate " + quoted(capture()) + " " + quoted(package()) + " --baselines pca4 --report " +
+                       quoted(out / "f.json"))
+                .exit_code,
+            0);
+  EXPECT_EQ(readJson(out / "f.json")["maps"]["albedo"]["rmse"].size(), 2u);
+}
+
+TEST_F(Command, InfoDevicesVersionAndHelp) {
+  EXPECT_THAT(runFacezip("info " + quoted(package())).out, HasSubstr("6 expressions, 4 difference textures"));
+  EXPECT_THAT(runFacezip("devices").out, HasSubstr("0:0"));
+  EXPECT_THAT(runFacezip("--version").out, HasSubstr("facezip "));
+  for (const char* command : {"synth", "compress", "reconstruct", "blend", "evaluate", "info", "devices", "demo"}) {
+    const test::CommandResult help = runFacezip(std::string(command) + " --help");
+    EXPECT_EQ(help.exit_code, 0) << command;
+    EXPECT_THAT(help.out, HasSubstr("--help")) << command;
+  }
+}
+
+TEST_F(Command, DemoMakesEverything) {
+  const test::TemporaryDirectory out;
+  const test::CommandResult result = runFacezip("demo --resolution 128 --output " + quoted(out / "demo"));
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  EXPECT_THAT(result.out, HasSubstr("PCA(4)"));
+  for (const char* file :
+       {"capture/capture.json", "package/package.json", "compress.json", "evaluate.json", "contact_sheet.png"}) {
+    EXPECT_TRUE(fs::exists(out / "demo" / file)) << file;
+  }
+}
+
+TEST_F(Command, InterruptLeavesNothing) {
+  const test::TemporaryDirectory out;
+  const test::CommandResult result =
+      runFacezip("synth --resolution 2048 --output " + quoted(out / "capture"), "timeout --signal=INT 1");
+  EXPECT_EQ(test::filesBelow(out.path()).size(), 0u);
+  EXPECT_THAT(result.error, HasSubstr("cancelled"));
+}
+
+}  // namespace
+}  // namespace facezip

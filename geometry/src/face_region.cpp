@@ -89,8 +89,8 @@ std::vector<int> usedVertices(const TriangleMesh& mesh, const std::vector<int>& 
   sortUnique(vertices);
   for (const int vertex : vertices) {
     if (vertex >= 0 && vertex < mesh.positions.rows() && mesh.positions.row(vertex).allFinite()) continue;
-    throw InputError(
-        {"", fmt::format("vertex {}", vertex), "an existing vertex at a finite position", "another", "check the mesh"});
+    throw InputError({"", fmt::format("vertex {} of the mesh", vertex), "a finite position", "none or not finite",
+                      "check the mesh"});
   }
   return vertices;
 }

@@ -38,7 +38,7 @@ void requireSameUvs(const TriangleMesh& neutral, const std::string& neutral_file
   requireSameCount("texture coordinates", neutral.uvs.rows(), expression.uvs.rows(), neutral_file, file);
   requireSameTriangles("UV triangle", neutral.uv_triangles, expression.uv_triangles, neutral_file, file);
   for (Eigen::Index i = 0; i < neutral.uvs.rows(); ++i) {
-    if ((neutral.uvs.row(i) - expression.uvs.row(i)).cwiseAbs().maxCoeff() <= kUvTolerance) continue;
+    if (((neutral.uvs.row(i) - expression.uvs.row(i)).array().abs() <= kUvTolerance).all()) continue;  // NaN is not
     throw InputError({file, fmt::format("texture coordinate {}", i + 1),
                       fmt::format("({}, {}) as in {}", neutral.uvs(i, 0), neutral.uvs(i, 1), neutral_file),
                       fmt::format("({}, {})", expression.uvs(i, 0), expression.uvs(i, 1)),

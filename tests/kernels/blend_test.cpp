@@ -138,7 +138,14 @@ struct Scene {
 class Blend : public testing::TestWithParam<std::tuple<BlendCase, KernelVariant>> {
  protected:
   void SetUp() override {
-    if (test::smallSizesOnly() && std::get<0>(GetParam()).width > 100) GTEST_SKIP() << "large for a simulator";
+    if (!test::smallSizesOnly()) return;
+    const auto& [size, variant] = GetParam();
+    if (size.width > 50 || size.differences > 5) GTEST_SKIP() << "large for a simulator";
+    // Its shadow values of swizzles are read out of bounds when a lane is unused. The arithmetic is seen in the other
+    // types, the packing on every other device.
+    if (variant == KernelVariant::kCpu && size.channels == 3 && size.type == SampleType::kUint8) {
+      GTEST_SKIP() << "Oclgrind 21.10 --uninitialized crashes on the swizzles that pack RGB8";
+    }
   }
 };
 
@@ -193,6 +200,7 @@ INSTANTIATE_TEST_SUITE_P(
             BlendCase{93, 61, 3, 4, 8, SampleType::kUint8}, BlendCase{93, 61, 4, 4, 4, SampleType::kUint8},
             BlendCase{93, 61, 1, 4, 16, SampleType::kUint8}, BlendCase{64, 48, 3, 4, 8, SampleType::kUint8},
             BlendCase{64, 48, 4, 8, 8, SampleType::kUint8}, BlendCase{1, 1, 3, 4, 8, SampleType::kUint8},
+            BlendCase{35, 19, 4, 4, 8, SampleType::kUint8}, BlendCase{35, 19, 3, 4, 8, SampleType::kFloat32},
             BlendCase{17, 9, 2, 1, 1, SampleType::kUint8}, BlendCase{64, 16, 2, 3, 2, SampleType::kUint8},
             BlendCase{33, 40, 3, 5, 5, SampleType::kUint8}, BlendCase{50, 50, 3, 4, 100, SampleType::kUint8},
             BlendCase{93, 61, 3, 4, 8, SampleType::kUint16}, BlendCase{32, 32, 2, 4, 8, SampleType::kUint16},

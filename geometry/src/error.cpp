@@ -31,6 +31,12 @@ std::string describe(const std::filesystem::path& file, const std::string& reaso
 
 InputError::InputError(Parts parts) : Error(describe(parts)), parts_(std::move(parts)) {}
 
+InputError InputError::in(const std::string& file) const {
+  Parts parts = parts_;
+  if (parts.file.empty()) parts.file = file;
+  return InputError(std::move(parts));
+}
+
 OutputError::OutputError(const std::filesystem::path& file, const std::string& reason, const std::string& cure)
     : Error(describe(file, reason, cure)), file_(file) {}
 

@@ -61,11 +61,19 @@ CompressOptions parseCompressOptions(const CompressArguments& arguments) {
   CompressOptions options = arguments.options;
   options.method =
       arguments.method == "paper" ? CompressOptions::Method::kPaper : CompressOptions::Method::kNoPermutation;
-  options.mask_radius = geometry::parseLength(arguments.mask_radius);
+  try {
+    options.mask_radius = geometry::parseLength(arguments.mask_radius);
+  } catch (const InputError& error) {
+    throw error.in("--mask-radius " + arguments.mask_radius);
+  }
   if (arguments.masks > 0) options.masks = arguments.masks;
   if (arguments.gutter >= 0) options.gutter = arguments.gutter;
   if (!arguments.unit.empty()) {
-    geometry::parseUnit(arguments.unit);
+    try {
+      geometry::parseUnit(arguments.unit);
+    } catch (const InputError& error) {
+      throw error.in("--unit");
+    }
     options.unit = arguments.unit;
   }
   options.memory_bytes = parseBytes("--memory", arguments.memory);

@@ -41,7 +41,10 @@ class BadInput : public testing::Test {
     const test::CommandResult result = compress(options, before);
     EXPECT_EQ(result.exit_code, exit_code) << result.error;
     for (const std::string& part : parts) EXPECT_THAT(result.error, HasSubstr(part));
-    EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 1) << "one line:\n" << result.error;
+    // Image libraries may write lines of their own before; ours is the last, and one.
+    const std::size_t ours = result.error.find("facezip: error: ");
+    ASSERT_NE(ours, std::string::npos) << result.error;
+    EXPECT_EQ(result.error.find('\n', ours), result.error.size() - 1) << "one line:\n" << result.error;
     EXPECT_EQ(result.out, "");
     EXPECT_EQ(test::filesBelow(folder_.path()), files) << "something was left behind";
   }
@@ -114,7 +117,7 @@ TEST_F(BadInput, UvsOutsideTheImage) {
   geometry::TriangleMesh mesh = test::gridMesh(21);
   mesh.uvs(17, 0) = 1.25;
   geometry::writeObj(capture() / "neutral.obj", mesh);
-  expectFailure(cli::kExitInput, {"neutral.obj", "1.25", "[0"});
+  expectFailure(cli::kExitInput, {"neutral.obj", "1.25", "from 0 to 1"});
 }
 
 TEST_F(BadInput, MeshThatIsNoMesh) {

@@ -51,14 +51,14 @@ TEST_F(FullDisk, CompressFailsClearlyAndLeavesNothing) {
                            " --unit m --mask-radius 5cm --restarts 3 --cluster-restarts 3");
   EXPECT_EQ(result.exit_code, cli::kExitOutput) << result.error;
   EXPECT_THAT(result.error, testing::HasSubstr("cannot write"));
-  EXPECT_THAT(result.out, testing::HasSubstr("left: \n"));
+  EXPECT_THAT(result.out, testing::HasSubstr("left:\n"));
 }
 
 TEST_F(FullDisk, SynthFailsClearlyAndLeavesNothing) {
   const test::CommandResult result =
       runOnDisk("128k", "synth --resolution 128 --expressions 3 --output " + quoted(folder_ / "disk/capture"));
   EXPECT_EQ(result.exit_code, cli::kExitOutput) << result.error;
-  EXPECT_THAT(result.out, testing::HasSubstr("left: \n"));
+  EXPECT_THAT(result.out, testing::HasSubstr("left:\n"));
 }
 
 TEST_F(FullDisk, EnoughRoomForThePackageAloneIsEnough) {

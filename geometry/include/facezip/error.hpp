@@ -27,6 +27,8 @@ class InputError : public Error {
   };
   explicit InputError(Parts parts);
   const Parts& parts() const noexcept { return parts_; }
+  /// The same error, naming `file` if it named none: for errors about values whose origin only the caller knows.
+  InputError in(const std::string& file) const;
 
  private:
   Parts parts_;

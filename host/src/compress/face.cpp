@@ -92,10 +92,14 @@ void resolveUnit(const Capture& capture, const Face& face, const CompressOptions
     return;
   }
   if (options.masks || !options.mask_radius.unit) return;
-  const geometry::UnitGuess guess = geometry::guessUnit(face.mesh);
-  result.unit = guess.unit;
-  result.unit_guessed = true;
-  progress.note(guess.explanation);
+  try {
+    const geometry::UnitGuess guess = geometry::guessUnit(face.mesh);
+    result.unit = guess.unit;
+    result.unit_guessed = true;
+    progress.note(guess.explanation);
+  } catch (const InputError& error) {
+    throw error.in(capture.neutral_mesh.string());
+  }
 }
 
 geometry::SurfaceSamples sampleRegion(const FaceMasks& face, const CompressOptions& options) {
@@ -112,7 +116,11 @@ FaceMasks makeFaceMasks(const Capture& capture, const Face& face, const Compress
   progress.stage("masks", 0);
   resolveUnit(capture, face, options, result, progress);
   result.region = geometry::extractRegion(face.mesh, face.region);
-  result.samples = sampleRegion(result, options);
+  try {
+    result.samples = sampleRegion(result, options);
+  } catch (const InputError& error) {
+    throw error.in(options.masks ? "--masks" : "--mask-radius");
+  }
   progress.checkCancelled();
   const Eigen::MatrixXd phi = geometry::solveMaskWeights(result.region, result.samples.vertices);
   result.masks = geometry::compactMaskWeights(phi, options.mask_cutoff);

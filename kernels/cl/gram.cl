@@ -99,10 +99,10 @@ static void block_products(const float16* left, const float4* right, float16* pr
       for (int c = 0; c < CHANNELS; ++c) {
         const float16 a = left[(c * PART_ROWS + r) * 4 + k];
         const float4* b = right + ((c * PART_ROWS + r) * 4 + k) * 4;
-        p0 = FMA(a.s0000111122223333, (float16)(b[0], b[0], b[0], b[0]), p0);
-        p1 = FMA(a.s4444555566667777, (float16)(b[1], b[1], b[1], b[1]), p1);
-        p2 = FMA(a.s88889999aaaabbbb, (float16)(b[2], b[2], b[2], b[2]), p2);
-        p3 = FMA(a.sccccddddeeeeffff, (float16)(b[3], b[3], b[3], b[3]), p3);
+        p0 = FMA(a.s0000111122223333, b[0].s0123012301230123, p0);
+        p1 = FMA(a.s4444555566667777, b[1].s0123012301230123, p1);
+        p2 = FMA(a.s88889999aaaabbbb, b[2].s0123012301230123, p2);
+        p3 = FMA(a.sccccddddeeeeffff, b[3].s0123012301230123, p3);
       }
       products[r * TILE_SIDE + k] = p0;
       products[r * TILE_SIDE + 4 + k] = p1;

@@ -94,6 +94,7 @@ kernel __attribute__((reqd_work_group_size(WGS, 1, 1))) void gram_gpu(
         texel_products(tile_differences, p, I, J, expressions, products + item * PRODUCT_STRIDE);
         texel_slot_weights(slots + chunk, count, masks, texels[p], p, weights + item * WEIGHT_STRIDE);
         barrier(CLK_LOCAL_MEM_FENCE);
+#pragma unroll 4
         for (int q = 0; q < WGS; ++q) {
           const float product = products[q * PRODUCT_STRIDE + lane];
           const float4 low = weights4[q * (WEIGHT_STRIDE / 4) + group * 2];

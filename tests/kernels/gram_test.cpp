@@ -4,10 +4,12 @@
 
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <set>
 #include <tuple>
 #include <vector>
 
+#include "canary_buffer.hpp"
 #include "compress/difference.hpp"
 #include "reference/difference.hpp"
 #include "reference/gram.hpp"
@@ -234,6 +236,32 @@ TEST_P(GramVariant, RefusesABufferThatIsTooSmall) {
       context.allocate(differenceBufferBytes(shape, masks.tiles.size()) - 1, CL_MEM_READ_WRITE, "differences");
   GramAccumulator accumulator(context, slotsOf({masks}, 3), 2, GetParam());
   EXPECT_THROW(accumulator.add(tiles, small, shape, 1.0), DeviceError);
+}
+
+/// A plain float32 sum of these drops every summand but the first.
+TEST(GramReduce, CompensatesWhatRoundingDrops) {
+  device::DeviceContext& context = test::testDevice();
+  constexpr std::size_t kLanes = 16;
+  constexpr int kRows = 1000;
+  std::vector<float> partial(kRows * kLanes, 0.03125f);
+  std::fill_n(partial.begin(), kLanes, 1e6f);  // half a unit in its last place is 0.03125
+  std::vector<cl_int> rows(kRows);
+  std::iota(rows.begin(), rows.end(), 0);
+  // A kernel does not keep its arguments alive: they need names.
+  const cl::Buffer partial_buffer = context.upload(partial, "partial sums");
+  const cl::Buffer begin_buffer = context.upload(std::vector<cl_int>{0, kRows}, "rows of the slots");
+  const cl::Buffer rows_buffer = context.upload(rows, "rows");
+  const test::CanaryBuffer sums(context, kLanes * sizeof(cl_float2));
+  cl::Kernel kernel = context.kernel("gram_reduce.cl", "gram_reduce");
+  kernel.setArg(0, partial_buffer);
+  kernel.setArg(1, begin_buffer);
+  kernel.setArg(2, rows_buffer);
+  kernel.setArg(3, sums.buffer());
+  context.run(kernel, cl::NDRange(kLanes, 1), cl::NDRange(kLanes, 1));
+  context.finish();
+  for (const cl_float2 sum : sums.read<cl_float2>()) {
+    EXPECT_EQ(static_cast<double>(sum.s[0]) + static_cast<double>(sum.s[1]), 1e6 + 999 * 0.03125);
+  }
 }
 
 /// What does not fit into a launch goes into the next: every tile is in one plan, whole runs at a time.

@@ -15,8 +15,8 @@ struct MaskPair {
   bool operator==(const MaskPair&) const = default;
 };
 
-/// Which weighting each Gram matrix has. Slot 0 weighs all covered texels alike (for PCA and error shares), slot 1 + k
-/// by M_k^2, slot 1 + K + j by (M_k M_l)^2 of pair j.
+/// Which weighting each Gram matrix has. Slot 0 weighs all covered texels alike (for PCA and error shares), slot 1 + k by
+/// M_k^2, slot 1 + K + j by (M_k M_l)^2 of pair j.
 struct GramSlots {
   int masks = 0;                ///< K
   std::vector<MaskPair> pairs;  ///< rising by (k, l)

@@ -31,7 +31,8 @@
 #endif
 
 // Writes a row of 16 interleaved texels as CHANNELS planes. Assigned through an aligned pointer: vstore16 promises the
-// compiler no alignment, and PoCL then stores sample by sample.
+// compiler no alignment, and PoCL then stores sample by sample. Element by element, since a swizzle of four (a.s048c) widens
+// through undefined lanes, which Oclgrind cannot follow.
 static void store_planes(const DIFF16* x, global DIFF_T* row) {
   global DIFF16* out = (global DIFF16*)row;
   const int plane = TILE_SIDE;  // rows of 16 between the planes of a tile
@@ -39,8 +40,8 @@ static void store_planes(const DIFF16* x, global DIFF_T* row) {
   out[0] = x[0];
 #elif CHANNELS == 2
   const DIFF16 a = x[0], b = x[1];
-  out[0] = (DIFF16)(a.even, b.even);
-  out[plane] = (DIFF16)(a.odd, b.odd);
+  out[0] = (DIFF16)(a.s0, a.s2, a.s4, a.s6, a.s8, a.sa, a.sc, a.se, b.s0, b.s2, b.s4, b.s6, b.s8, b.sa, b.sc, b.se);
+  out[plane] = (DIFF16)(a.s1, a.s3, a.s5, a.s7, a.s9, a.sb, a.sd, a.sf, b.s1, b.s3, b.s5, b.s7, b.s9, b.sb, b.sd, b.sf);
 #elif CHANNELS == 3
   const DIFF16 a = x[0], b = x[1], c = x[2];
   out[0] = (DIFF16)(a.s0, a.s3, a.s6, a.s9, a.sc, a.sf, b.s2, b.s5, b.s8, b.sb, b.se, c.s1, c.s4, c.s7, c.sa, c.sd);
@@ -49,10 +50,12 @@ static void store_planes(const DIFF16* x, global DIFF_T* row) {
       (DIFF16)(a.s2, a.s5, a.s8, a.sb, a.se, b.s1, b.s4, b.s7, b.sa, b.sd, c.s0, c.s3, c.s6, c.s9, c.sc, c.sf);
 #else
   const DIFF16 a = x[0], b = x[1], c = x[2], d = x[3];
-  out[0] = (DIFF16)(a.s048c, b.s048c, c.s048c, d.s048c);
-  out[plane] = (DIFF16)(a.s159d, b.s159d, c.s159d, d.s159d);
-  out[2 * plane] = (DIFF16)(a.s26ae, b.s26ae, c.s26ae, d.s26ae);
-  out[3 * plane] = (DIFF16)(a.s37bf, b.s37bf, c.s37bf, d.s37bf);
+  out[0] = (DIFF16)(a.s0, a.s4, a.s8, a.sc, b.s0, b.s4, b.s8, b.sc, c.s0, c.s4, c.s8, c.sc, d.s0, d.s4, d.s8, d.sc);
+  out[plane] = (DIFF16)(a.s1, a.s5, a.s9, a.sd, b.s1, b.s5, b.s9, b.sd, c.s1, c.s5, c.s9, c.sd, d.s1, d.s5, d.s9, d.sd);
+  out[2 * plane] =
+      (DIFF16)(a.s2, a.s6, a.sa, a.se, b.s2, b.s6, b.sa, b.se, c.s2, c.s6, c.sa, c.se, d.s2, d.s6, d.sa, d.se);
+  out[3 * plane] =
+      (DIFF16)(a.s3, a.s7, a.sb, a.sf, b.s3, b.s7, b.sb, b.sf, c.s3, c.s7, c.sb, c.sf, d.s3, d.s7, d.sb, d.sf);
 #endif
 }
 

@@ -2,7 +2,7 @@
 //   partial[row][b][4 i + j] = sum over the tiles of a run and their texels p of
 //                              w_row(p) * sum_c Delta_{4I+i}(p, c) * Delta_{4J+j}(p, c),     w = t, t M_k^2 or t (M_k M_l)^2
 // t is the texel weight. Block b = J (J + 1) / 2 + I, I <= J, is a 4 x 4 piece of the upper triangle of an N x N matrix;
-// expressions past N count as 0. A row is one matrix (slot) of one run; gram_reduce.cl adds the runs.
+// lanes past N repeat the last expression and are not used. A row is one matrix (slot) of one run; gram_reduce.cl adds the runs.
 //
 //   products of a part of a tile            times weights (broadcast)          sums in registers
 //   P[p] = 16 lanes (i, j) of a block   x   W[slot][p]   8 slots at once   =   2 blocks x 8 slots x 16 lanes
@@ -68,16 +68,15 @@ static void slot_weights(global const int2* slots, int count, global const float
 // Transposes a part of four expressions: out[c][row][k] = the four differences of texels k, 4 + k, 8 + k and 12 + k.
 static void load_block(global const DIFF_T* tile, int block, int expressions, float16* out) {
   const int n = 4 * block;
-  const float keep1 = n + 1 < expressions ? 1.0f : 0.0f;
-  const float keep2 = n + 2 < expressions ? 1.0f : 0.0f;
-  const float keep3 = n + 3 < expressions ? 1.0f : 0.0f;
+  const int last = expressions - 1;
+  const int plane = CHANNELS * TILE_TEXELS;
   for (int c = 0; c < CHANNELS; ++c) {
     global const DIFF_T* x = tile + (ulong)c * TILE_TEXELS;
     for (int r = 0; r < PART_ROWS; ++r) {
-      const float16 x0 = convert_float16(vload16(r, x + n * CHANNELS * TILE_TEXELS));
-      const float16 x1 = keep1 * convert_float16(vload16(r, x + min(n + 1, expressions - 1) * CHANNELS * TILE_TEXELS));
-      const float16 x2 = keep2 * convert_float16(vload16(r, x + min(n + 2, expressions - 1) * CHANNELS * TILE_TEXELS));
-      const float16 x3 = keep3 * convert_float16(vload16(r, x + min(n + 3, expressions - 1) * CHANNELS * TILE_TEXELS));
+      const float16 x0 = convert_float16(vload16(r, x + n * plane));
+      const float16 x1 = convert_float16(vload16(r, x + min(n + 1, last) * plane));
+      const float16 x2 = convert_float16(vload16(r, x + min(n + 2, last) * plane));
+      const float16 x3 = convert_float16(vload16(r, x + min(n + 3, last) * plane));
       const ulong8 low01 = as_ulong8(LOW(x0, x1));
       const ulong8 high01 = as_ulong8(HIGH(x0, x1));
       const ulong8 low23 = as_ulong8(LOW(x2, x3));
@@ -99,10 +98,10 @@ static void block_products(const float16* left, const float4* right, float16* pr
       for (int c = 0; c < CHANNELS; ++c) {
         const float16 a = left[(c * PART_ROWS + r) * 4 + k];
         const float4* b = right + ((c * PART_ROWS + r) * 4 + k) * 4;
-        p0 = FMA(a.s0000111122223333, (float16)(b[0], b[0], b[0], b[0]), p0);
-        p1 = FMA(a.s4444555566667777, (float16)(b[1], b[1], b[1], b[1]), p1);
-        p2 = FMA(a.s88889999aaaabbbb, (float16)(b[2], b[2], b[2], b[2]), p2);
-        p3 = FMA(a.sccccddddeeeeffff, (float16)(b[3], b[3], b[3], b[3]), p3);
+        p0 = FMA(a.s0000111122223333, b[0].s0123012301230123, p0);
+        p1 = FMA(a.s4444555566667777, b[1].s0123012301230123, p1);
+        p2 = FMA(a.s88889999aaaabbbb, b[2].s0123012301230123, p2);
+        p3 = FMA(a.sccccddddeeeeffff, b[3].s0123012301230123, p3);
       }
       products[r * TILE_SIDE + k] = p0;
       products[r * TILE_SIDE + 4 + k] = p1;

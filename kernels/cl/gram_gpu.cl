@@ -35,10 +35,10 @@ static void texel_products(global const DIFF_T* tile, int p, int I, int J, int e
     float a[4];
     float b[4];
     for (int i = 0; i < 4; ++i) {
-      const int n = 4 * I + i;
-      const int m = 4 * J + i;
-      a[i] = n < expressions ? (float)tile[(n * CHANNELS + c) * TILE_TEXELS + p] : 0.0f;
-      b[i] = m < expressions ? (float)tile[(m * CHANNELS + c) * TILE_TEXELS + p] : 0.0f;
+      const int n = min(4 * I + i, expressions - 1);
+      const int m = min(4 * J + i, expressions - 1);
+      a[i] = (float)tile[(n * CHANNELS + c) * TILE_TEXELS + p];
+      b[i] = (float)tile[(m * CHANNELS + c) * TILE_TEXELS + p];
     }
     for (int l = 0; l < LANES; ++l) sum[l] = FMA(a[l / 4], b[l % 4], sum[l]);
   }
@@ -94,6 +94,7 @@ kernel __attribute__((reqd_work_group_size(WGS, 1, 1))) void gram_gpu(
         texel_products(tile_differences, p, I, J, expressions, products + item * PRODUCT_STRIDE);
         texel_slot_weights(slots + chunk, count, masks, texels[p], p, weights + item * WEIGHT_STRIDE);
         barrier(CLK_LOCAL_MEM_FENCE);
+#pragma unroll 4
         for (int q = 0; q < WGS; ++q) {
           const float product = products[q * PRODUCT_STRIDE + lane];
           const float4 low = weights4[q * (WEIGHT_STRIDE / 4) + group * 2];

@@ -17,7 +17,10 @@ class CanaryBuffer {
   CanaryBuffer(const device::DeviceContext& context, std::size_t bytes)
       : context_(context),
         bytes_(bytes),
-        buffer_(context.upload(std::vector<unsigned char>(bytes + kGuard, kFill), "output and canary")) {}
+        buffer_(context.allocate(bytes + kGuard, CL_MEM_READ_WRITE, "output and canary")) {
+    const std::vector<unsigned char> fill(bytes + kGuard, kFill);
+    context.write(buffer_, fill.data(), fill.size(), "output and canary");
+  }
 
   const cl::Buffer& buffer() const { return buffer_; }
 

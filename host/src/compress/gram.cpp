@@ -24,10 +24,16 @@ int blockCount(int expressions) {
 
 }  // namespace
 
+device::KernelVariant gramVariant(const device::DeviceContext& context, device::KernelVariant wanted) {
+  if (context.info().name.find("llvmpipe") != std::string::npos) return device::KernelVariant::kGpu;
+  return context.resolve(wanted);
+}
+
 GramAccumulator::GramAccumulator(device::DeviceContext& context, GramSlots slots, int expressions,
-                                 device::KernelVariant variant)
+                                 device::KernelVariant variant, std::size_t largest_partial_bytes)
     : context_(context),
-      variant_(context.resolve(variant)),
+      variant_(gramVariant(context, variant)),
+      largest_partial_bytes_(largest_partial_bytes),
       pair_slots_(slots),
       run_begin_(context, "runs of tiles", CL_MEM_READ_ONLY),
       run_rows_(context, "partial sums of the runs", CL_MEM_READ_ONLY),
@@ -50,11 +56,11 @@ void GramAccumulator::add(const DeviceTiles& tiles, const cl::Buffer& difference
   if (tiles.tileCount() == 0) return;
   device::requireBytes(context_, differences, differenceBufferBytes(shape, tiles.tileCount()), "differences of a band");
   const std::size_t blocks = static_cast<std::size_t>(blockCount(sums_.expressions));
-  const std::size_t most_rows = kLargestPartialBytes / (kBlockBytes * std::min(blocks, kFewestBlocks));
+  const std::size_t most_rows = largest_partial_bytes_ / (kBlockBytes * std::min(blocks, kFewestBlocks));
   for (std::size_t tile = 0; tile < tiles.tileCount();) {
     const GramPlan plan = planGram(tiles, sums_.slots, pair_slots_, tile, most_rows);
     uploadPlan(plan);
-    const std::size_t most_blocks = std::max<std::size_t>(1, kLargestPartialBytes / (kBlockBytes * plan.rows()));
+    const std::size_t most_blocks = std::max<std::size_t>(1, largest_partial_bytes_ / (kBlockBytes * plan.rows()));
     for (std::size_t block = 0; block < blocks; block += most_blocks) {
       const int count = static_cast<int>(std::min(most_blocks, blocks - block));
       runBlocks(tiles, differences, shape, plan, static_cast<int>(block), count);

@@ -15,13 +15,18 @@
 
 namespace facezip::compress {
 
+/// The variant that runs when `wanted` is asked for: kAuto goes by the device's type, and Mesa's llvmpipe, a CPU,
+/// always gets kGpu. It ends every work-item after 65,535 rounds of its loops, in all and without a word (gallivm's
+/// LP_MAX_TGSI_LOOP_ITERATIONS), and the register-blocked work-items need millions.
+device::KernelVariant gramVariant(const device::DeviceContext& context, device::KernelVariant wanted);
+
 /// Adds up the Gram matrices of a capture, map by map and band by band.
 ///
 /// Sums: texels of a tile in float32, tiles of a run (at most 64) in float32, runs by compensated sums on the device,
 /// bands in double on the host; every order is fixed, so the bits are the same on every run of one device. Expressions
 /// with equal samples get equal rows to the last bit.
-/// Memory on the device: the partial sums of a launch stay below kLargestPartialBytes; a band that needs more is done
-/// in several launches.
+/// Memory on the device: the partial sums of a launch stay below `largest_partial_bytes`, and above it only if one run
+/// of tiles under one block of 4 x 4 expressions needs more; a band that needs more is done in several launches.
 class GramAccumulator {
  public:
   static constexpr std::size_t kLargestPartialBytes = std::size_t{64} << 20;
@@ -29,9 +34,10 @@ class GramAccumulator {
   /// slots        the matrices that are wanted. A pair of masks that a tile holds but `slots` does not list is taken
   ///              to share no texel and is left out.
   /// expressions  N, 1 or more
-  /// variant      register-blocked work-items (kCpu) or work-groups with local memory (kGpu)
+  /// variant      register-blocked work-items (kCpu) or work-groups with local memory (kGpu); see gramVariant()
   GramAccumulator(device::DeviceContext& context, GramSlots slots, int expressions,
-                  device::KernelVariant variant = device::KernelVariant::kAuto);
+                  device::KernelVariant variant = device::KernelVariant::kAuto,
+                  std::size_t largest_partial_bytes = kLargestPartialBytes);
 
   /// Adds one band of one map. Waits for the device.
   /// differences    what computeDifferences() wrote for the same tiles and shape; shape.expressions is N
@@ -50,6 +56,7 @@ class GramAccumulator {
 
   device::DeviceContext& context_;
   device::KernelVariant variant_;
+  std::size_t largest_partial_bytes_;
   PairSlots pair_slots_;
   GramMatrices sums_;
   device::PooledBuffer run_begin_;

@@ -26,6 +26,19 @@ void appendTile(std::span<const int> masks, const GramSlots& slots, const PairSl
   }
 }
 
+/// Appends the tiles of one run, with slots in place of rows. Returns the tile behind it.
+std::size_t appendRun(const DeviceTiles& tiles, const GramSlots& slots, const PairSlots& pair_slots, std::size_t tile,
+                      GramPlan& plan) {
+  const std::size_t last = std::min(tile + kTilesPerRun, tiles.tileCount());
+  const std::size_t first_entry = plan.entries.size();
+  while (tile < last && plan.entries.size() - first_entry < kSumsPerRun) {
+    plan.slot_begin[tile] = static_cast<cl_int>(plan.entries.size());
+    appendTile(tiles.masksOf(tile), slots, pair_slots, plan.entries);
+    plan.slot_begin[++tile] = static_cast<cl_int>(plan.entries.size());
+  }
+  return tile;
+}
+
 /// Gives every slot of a run a row and replaces slots by rows. `row_of_slot` is -1 throughout, before and after.
 /// Returns the slots of the run, rising, in the order of their rows.
 std::vector<int> numberRows(std::span<cl_int2> entries, int first_row, std::vector<int>& row_of_slot) {
@@ -83,13 +96,8 @@ GramPlan planGram(const DeviceTiles& tiles, const GramSlots& slots, const PairSl
   std::vector<int> row_of_slot(static_cast<std::size_t>(slots.count()), -1);
   std::size_t tile = first_tile;
   while (tile < tiles.tileCount()) {
-    const std::size_t run_end = std::min(tile + kTilesPerRun, tiles.tileCount());
     const std::size_t first_entry = plan.entries.size();
-    for (std::size_t t = tile; t < run_end; ++t) {
-      plan.slot_begin[t] = static_cast<cl_int>(plan.entries.size());
-      appendTile(tiles.masksOf(t), slots, pair_slots, plan.entries);
-      plan.slot_begin[t + 1] = static_cast<cl_int>(plan.entries.size());
-    }
+    const std::size_t run_end = appendRun(tiles, slots, pair_slots, tile, plan);
     std::vector<int> used = numberRows(std::span(plan.entries).subspan(first_entry), plan.run_rows.back(), row_of_slot);
     if (plan.runs() > 0 && plan.rows() + used.size() > most_rows) {
       plan.entries.resize(first_entry);  // this run is the first of the next plan

@@ -11,6 +11,9 @@ namespace facezip::compress {
 
 /// Tiles of a run are added in float32 on the device: few enough that the rounding stays near that of one tile.
 inline constexpr std::size_t kTilesPerRun = 64;
+/// A run also ends when its tiles take part in this many sums: runs cost alike, and the loops of a work-item stay
+/// within the 65,535 rounds that llvmpipe grants it (gram_gpu.cl: about 200 rounds per 32 sums of a tile).
+inline constexpr std::size_t kSumsPerRun = 2048;
 
 /// The work of one launch over the tiles [first_tile, first_tile + tile_count) of a band, cut into runs of
 /// kTilesPerRun. Indices of tiles are those of the band. Each run has one row of partial sums per slot that its tiles

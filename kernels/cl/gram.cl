@@ -2,7 +2,8 @@
 //   partial[row][b][4 i + j] = sum over the tiles of a run and their texels p of
 //                              w_row(p) * sum_c Delta_{4I+i}(p, c) * Delta_{4J+j}(p, c),     w = t, t M_k^2 or t (M_k M_l)^2
 // t is the texel weight. Block b = J (J + 1) / 2 + I, I <= J, is a 4 x 4 piece of the upper triangle of an N x N matrix;
-// lanes past N repeat the last expression and are not used. A row is one matrix (slot) of one run; gram_reduce.cl adds the runs.
+// lanes past N repeat the last expression and are not used. A row is one matrix (slot) of one run; gram_reduce.cl adds
+// the runs.
 //
 //   products of a part of a tile            times weights (broadcast)          sums in registers
 //   P[p] = 16 lanes (i, j) of a block   x   W[slot][p]   8 slots at once   =   2 blocks x 8 slots x 16 lanes

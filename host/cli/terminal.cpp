@@ -1,6 +1,7 @@
 #include "terminal.hpp"
 
 #include <fmt/format.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -13,9 +14,25 @@ namespace {
 constexpr auto kRedrawInterval = std::chrono::milliseconds(100);
 std::atomic<Progress*> g_cancelled_by_signal = nullptr;
 
+/// Seconds of a clock that may be read in a signal handler.
+double handlerClock() {
+  timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+volatile double g_first_signal = 0.0;
+
 void onSignal(int signal) {
+  // One Ctrl-C may arrive twice, by the terminal and by a parent that passes it on: only a later one is a second wish.
+  const double now = handlerClock();
+  if (g_first_signal == 0.0) g_first_signal = now;
+  if (now - g_first_signal > 1.0) {
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+    return;
+  }
   if (Progress* progress = g_cancelled_by_signal.load()) progress->cancel();
-  std::signal(signal, SIG_DFL);
 }
 
 }  // namespace

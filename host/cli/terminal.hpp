@@ -31,7 +31,7 @@ class TerminalProgress : public Progress {
 };
 
 /// Makes Ctrl-C and SIGTERM cancel `progress`, so that the work stops at its next step and removes what is unfinished.
-/// A second Ctrl-C ends the process at once. One at a time.
+/// Another one, a second or more later, ends the process at once. One object at a time.
 class CancelOnSignal {
  public:
   explicit CancelOnSignal(Progress& progress);

@@ -63,6 +63,7 @@ class Device {
 /// Opens the device that `selector` names:
 ///   "auto"          the first GPU, else the first CPU, else the first device (also what "" means)
 ///   "gpu", "cpu"    the first device of that type
+///   "pocl"          the first device of the platform "Portable Computing Language"
 ///   "P:D", "P"      device D (default 0) of platform P, as `facezip devices` counts them
 ///   other text      the first device whose name or platform contains it, upper and lower case alike
 /// Throws DeviceError that lists what there is, or says how to install a driver when there is nothing.

@@ -73,6 +73,8 @@ bool matches(const DeviceInfo& info, const std::string& selector) {
   if (index) return info.selector == (selector.find(':') == std::string::npos ? selector + ":0" : selector);
   if (selector == "gpu") return info.type == DeviceInfo::Type::kGpu;
   if (selector == "cpu") return info.type == DeviceInfo::Type::kCpu;
+  // Everybody calls it PoCL; the platform does not.
+  if (selector == "pocl") return info.platform == "Portable Computing Language";
   return lowerCase(info.name).find(selector) != std::string::npos ||
          lowerCase(info.platform).find(selector) != std::string::npos;
 }

@@ -3,7 +3,8 @@
 
 namespace facezip::test {
 
-// --- texels -----------------------------------------------------------------------------------------------------------
+// --- texels
+// -----------------------------------------------------------------------------------------------------------
 
 // 16-bit and float differences: one rounding of the subtraction and one of the scaling, each half a unit of 2^-24,
 // relative to the larger sample (255 full scale). 8-bit differences are exact and are compared so.

@@ -69,7 +69,8 @@ void printCompressReport(const CompressReport& report) {
   } else {
     fmt::print("permutation cost {:.4g} (not permuted)\n", report.permutation_cost);
   }
-  fmt::print("package on disk {}\n\n", formatMegabytes(report.package_disk_bytes));
+  fmt::print("package on disk {}, peak memory {}\n\n", formatMegabytes(report.package_disk_bytes),
+             formatMegabytes(report.peak_memory_bytes));
   printSeconds(report.seconds);
   fmt::print("{:<34}{:>10.2f}\n", "  of it waiting for textures", report.read_seconds);
 }

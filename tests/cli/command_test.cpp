@@ -57,6 +57,23 @@ TEST_F(Command, CompressIsQuietInAPipeAndReports) {
   EXPECT_EQ(report["permutation"]["restart_costs"].size(), 20u);
 }
 
+TEST_F(Command, PeakMemoryDoesNotGrowWithTheHeightOfTheImage) {
+  const test::TemporaryDirectory out;
+  const auto peak = [&](int height) {
+    const std::string name = std::to_string(height);
+    test::writeSmallCapture(out / name, {.expressions = 12, .width = 1024, .height = height});
+    const test::CommandResult result =
+        runFacezip("compress " + quoted(out / name) + " --output " + quoted(out / ("p" + name)) +
+                   " --unit m --mask-radius 5cm --restarts 3 --memory 400MiB --report " + quoted(out / "r.json"));
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    return readJson(out / "r.json")["bytes"]["peak_memory"].get<double>();
+  };
+  const double square = peak(1024);
+  const double tall = peak(4096);
+  EXPECT_LT(tall, 1.1 * square);
+  EXPECT_LT(tall, 400.0 * 1048576.0);
+}
+
 TEST_F(Command, ReconstructWritesEveryMapOfTheNamedExpressions) {
   const test::TemporaryDirectory out;
   EXPECT_EQ(runFacezip("reconstruct " + quoted(package()) + " --output " + quoted(out / "r") +

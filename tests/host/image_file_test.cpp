@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <numeric>
+#include <thread>
 #include <vector>
 
 #include "facezip/error.hpp"
@@ -68,6 +72,21 @@ INSTANTIATE_TEST_SUITE_P(Formats, ImageFile,
                            name[name.find('.')] = '_';
                            return name;
                          });
+
+TEST(ImageWriter, FilesDoNotDependOnTheTimeOfWriting) {
+  const test::TemporaryDirectory folder;
+  for (const FileCase& file :
+       {FileCase{"a.png", 3, image::SampleType::kUint8}, FileCase{"a.exr", 3, image::SampleType::kFloat32}}) {
+    const auto bytes = [&] {
+      image::writeImage(folder / file.name, ramp(9, 9, file.channels, file.type));
+      std::ifstream stream(folder / file.name, std::ios::binary);
+      return std::string(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+    };
+    const std::string first = bytes();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // headers count in seconds
+    EXPECT_EQ(bytes(), first) << file.name;
+  }
+}
 
 TEST(ImageReader, GoesBackToEarlierRows) {
   const test::TemporaryDirectory folder;

@@ -37,8 +37,8 @@ class Blender {
   /// and clamped; floats are neither. With all weights zero the result is the neutral, bit for bit.
   /// map_index  index into Package::maps()
   /// out        PackageMap::frameBytes() bytes: height x width x channels samples, row 0 first, channels interleaved.
-  ///            On a CPU device the kernel writes straight into it when it is aligned to 64 bytes (16 for 8-bit RGB) and
-  ///            the width is a multiple of 16 and the height of 8; otherwise the frame is copied once.
+  ///            On a CPU device the kernel writes straight into it when it is aligned to 64 bytes (16 for 8-bit RGB)
+  ///            and the width is a multiple of 16 and the height of 8; otherwise the frame is copied once.
   /// Throws InputError for an index or a size that does not fit.
   void blend(int map_index, std::span<std::byte> out);
 

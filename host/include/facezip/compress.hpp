@@ -59,6 +59,7 @@ struct CompressReport {
   std::vector<std::pair<std::string, double>> seconds;  ///< wall time of each stage, in order
   double read_seconds = 0.0;                            ///< of it: waiting for images to be decoded
   std::uint64_t package_disk_bytes = 0;
+  std::uint64_t peak_memory_bytes = 0;  ///< largest resident size of the process so far
   std::string device;
 };
 

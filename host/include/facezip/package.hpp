@@ -20,16 +20,16 @@ struct PackageDifference {
 
 /// One map (albedo, normal, ...): its neutral texture I_0 and its difference textures.
 struct PackageMap {
-  std::string name;  ///< names the map's folder too
-  int width = 0;     ///< texels
-  int height = 0;    ///< texels; row 0 is v = 1
-  int channels = 0;  ///< 1 to 4, interleaved
+  std::string name;                             ///< names the map's folder too
+  int width = 0;                                ///< texels
+  int height = 0;                               ///< texels; row 0 is v = 1
+  int channels = 0;                             ///< 1 to 4, interleaved
   SampleType sample_type = SampleType::kUint8;  ///< of the neutral, and so of every frame that is blended from it
-  std::string colour_space;                    ///< "sRGB", "linear" or "" (not said)
-  int weight_scale = 8;                        ///< s: texels to a cell of the weight maps, along each axis
-  double metric_weight = 1.0;                  ///< how much the map counted in the compression
-  std::string neutral_file;                    ///< relative to the package
-  std::vector<PackageDifference> differences;  ///< C, in the order of the weight channels
+  std::string colour_space;                     ///< "sRGB", "linear" or "" (not said)
+  int weight_scale = 8;                         ///< s: texels to a cell of the weight maps, along each axis
+  double metric_weight = 1.0;                   ///< how much the map counted in the compression
+  std::string neutral_file;                     ///< relative to the package
+  std::vector<PackageDifference> differences;   ///< C, in the order of the weight channels
 
   /// Bytes of a whole neutral texture, or of a blended frame: height x width x channels samples, no padding.
   std::size_t frameBytes() const;

@@ -2,6 +2,7 @@
 #include "facezip/compress.hpp"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -69,6 +70,12 @@ void widen(std::vector<TextureRange>& whole, const std::vector<TextureRange>& pa
   }
 }
 
+std::uint64_t peakMemoryBytes() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
+}
+
 class Compression {
  public:
   Compression(const Capture& capture, const fs::path& package, const CompressOptions& options, const Device& device,
@@ -93,6 +100,7 @@ class Compression {
     clock_.book("publishing");
     for (const OpenMap& map : maps_.maps) report_.read_seconds += map.samples->waitSeconds();
     report_.seconds = clock_.seconds();
+    report_.peak_memory_bytes = peakMemoryBytes();
     return report_;
   }
 

@@ -153,6 +153,8 @@ ImageWriter::ImageWriter(fs::path path, const ImageShape& shape, const std::stri
   OIIO::ImageSpec spec(shape.width, shape.height, shape.channels, oiioType(shape.type));
   spec.attribute("oiio:UnassociatedAlpha", 1);
   if (!colour_space.empty()) spec.attribute("oiio:ColorSpace", colour_space);
+  // EXR headers get the time of writing unless one is given: the same input would give other bytes every second.
+  if (path_.extension() == ".exr") spec.attribute("DateTime", "1970:01:01 00:00:00");
   // Level 6 takes three times as long and saves a few per cent on photographic data.
   spec.attribute("png:compressionLevel", 4);
   errno = 0;

@@ -50,9 +50,7 @@ std::uint64_t checkImage(const fs::path& file, const image::ImageShape& shape) {
 
 }  // namespace
 
-image::ImageShape neutralShape(const PackageMap& map) {
-  return {map.width, map.height, map.channels, map.sample_type};
-}
+image::ImageShape neutralShape(const PackageMap& map) { return {map.width, map.height, map.channels, map.sample_type}; }
 
 image::ImageShape differenceShape(const PackageMap& map) {
   return {map.width, map.height, map.channels, image::SampleType::kUint8};

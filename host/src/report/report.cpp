@@ -45,7 +45,7 @@ std::string toJson(const CompressReport& report) {
         {"convergence", report.convergence}}},
       {"band_rows", report.band_rows},
       {"later_passes", report.decoded},
-      {"bytes", {{"package_disk", report.package_disk_bytes}}},
+      {"bytes", {{"package_disk", report.package_disk_bytes}, {"peak_memory", report.peak_memory_bytes}}},
       {"seconds", secondsJson(report.seconds)}};
   object["seconds"]["waiting for textures"] = report.read_seconds;
   return object.dump(2) + "\n";

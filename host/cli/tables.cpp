@@ -72,7 +72,8 @@ void printCompressReport(const CompressReport& report) {
   fmt::print("package on disk {}, peak memory {}\n\n", formatMegabytes(report.package_disk_bytes),
              formatMegabytes(report.peak_memory_bytes));
   printSeconds(report.seconds);
-  fmt::print("{:<34}{:>10.2f}\n", "  of it waiting for textures", report.read_seconds);
+  fmt::print("{:<34}{:>10.2f}\n", "  of it waiting for textures", report.wait_seconds);
+  fmt::print("{:<34}{:>10.2f}\n", "  decoding, beside the work", report.decode_seconds);
 }
 
 void printEvaluation(const Evaluation& evaluation) {

@@ -57,7 +57,8 @@ struct CompressReport {
   int band_rows = 0;
   std::string decoded;  ///< how later passes read the textures: "scratch file" or "decoded again"
   std::vector<std::pair<std::string, double>> seconds;  ///< wall time of each stage, in order
-  double read_seconds = 0.0;                            ///< of it: waiting for images to be decoded
+  double decode_seconds = 0.0;                          ///< wall time of decoding images, most of it beside other work
+  double wait_seconds = 0.0;                            ///< of it: waiting for images to be decoded
   std::uint64_t package_disk_bytes = 0;
   std::uint64_t peak_memory_bytes = 0;  ///< largest resident size of the process so far
   std::string device;

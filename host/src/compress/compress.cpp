@@ -98,7 +98,10 @@ class Compression {
     report_.package_disk_bytes = diskBytes();
     staged_.commit();
     clock_.book("publishing");
-    for (const OpenMap& map : maps_.maps) report_.read_seconds += map.samples->waitSeconds();
+    for (const OpenMap& map : maps_.maps) {
+      report_.wait_seconds += map.samples->waitSeconds();
+      report_.decode_seconds += map.samples->decodeSeconds();
+    }
     report_.seconds = clock_.seconds();
     report_.peak_memory_bytes = peakMemoryBytes();
     return report_;

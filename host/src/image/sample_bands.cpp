@@ -51,10 +51,12 @@ std::size_t SampleBands::bandBytes(int rows) const {
 std::size_t SampleBands::decodedBytes() const { return bandBytes(shape_.height); }
 
 void SampleBands::decodeBand(int begin, int end, std::span<std::byte> out) {
+  const auto start = std::chrono::steady_clock::now();
   const std::size_t image_bytes = static_cast<std::size_t>(end - begin) * shape_.rowBytes();
   tbb::parallel_for(std::size_t{0}, readers_.size(), [&](std::size_t i) {
     readers_[i].readRows(begin, end, out.subspan(i * image_bytes, image_bytes));
   });
+  decode_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 void SampleBands::readBand(int begin, int end, std::span<std::byte> out) {

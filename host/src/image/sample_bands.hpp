@@ -44,6 +44,8 @@ class SampleBands {
 
   /// Seconds that forEachBand waited for samples, over all passes.
   double waitSeconds() const { return wait_seconds_; }
+  /// Seconds that decoding took beside the work, over all passes.
+  double decodeSeconds() const { return decode_seconds_; }
 
  private:
   void readBand(int begin, int end, std::span<std::byte> out);
@@ -57,6 +59,7 @@ class SampleBands {
   bool kept_ = false;  ///< a whole pass is in scratch_
   std::vector<std::byte> buffers_[2];
   double wait_seconds_ = 0.0;
+  double decode_seconds_ = 0.0;
 };
 
 }  // namespace facezip::image

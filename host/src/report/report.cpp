@@ -47,7 +47,8 @@ std::string toJson(const CompressReport& report) {
       {"later_passes", report.decoded},
       {"bytes", {{"package_disk", report.package_disk_bytes}, {"peak_memory", report.peak_memory_bytes}}},
       {"seconds", secondsJson(report.seconds)}};
-  object["seconds"]["waiting for textures"] = report.read_seconds;
+  object["seconds"]["waiting for textures"] = report.wait_seconds;
+  object["seconds"]["decoding textures"] = report.decode_seconds;
   return object.dump(2) + "\n";
 }
 

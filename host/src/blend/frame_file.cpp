@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <regex>
+#include <algorithm>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -32,12 +33,14 @@ void writeFrame(const fs::path& file, const PackageMap& map, std::span<const std
 }
 
 FramePattern::FramePattern(std::string pattern, bool numbered, std::size_t maps) : pattern_(std::move(pattern)) {
-  static const std::regex number("%(0([1-9]))?d");
-  std::smatch match;
-  if (std::regex_search(pattern_, match, number)) {
-    number_begin_ = static_cast<std::size_t>(match.position());
-    number_length_ = static_cast<std::size_t>(match.length());
-    number_width_ = match[2].matched ? std::stoi(match[2]) : 0;
+  // "%d" or "%0Nd" with one digit N, as printf has it.
+  const std::size_t percent = pattern_.find('%');
+  const std::string_view rest = std::string_view(pattern_).substr(std::min(percent, pattern_.size()));
+  const bool padded = rest.size() >= 4 && rest[1] == '0' && rest[2] >= '1' && rest[2] <= '9' && rest[3] == 'd';
+  if (padded || rest.starts_with("%d")) {
+    number_begin_ = percent;
+    number_length_ = padded ? 4 : 2;
+    number_width_ = padded ? rest[2] - '0' : 0;
   } else if (numbered) {
     throw InputError({"--output", "", "a pattern with the number of the frame, such as frames/%04d.png", pattern_, ""});
   }

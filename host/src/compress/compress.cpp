@@ -34,6 +34,7 @@ namespace {
 using namespace compress;
 namespace fs = std::filesystem;
 
+constexpr int kCodeBits = 8;  // of a texel of a difference texture
 constexpr int kTextures = 4;  // C: the paper's four, whose weights are one RGBA texel
 
 void requireSaneOptions(const CompressOptions& options) {
@@ -50,16 +51,6 @@ void requireSaneOptions(const CompressOptions& options) {
   require(!options.masks || *options.masks >= 1, "--masks", "at least 1", fmt::format("{}", options.masks.value_or(0)));
   require(!options.gutter || *options.gutter >= 0, "--gutter", "0 or more",
           fmt::format("{}", options.gutter.value_or(0)));
-}
-
-/// Scale and offset that hold `range` in 8 bits with zero among the codes, so that an untouched texel stays untouched.
-TextureEncoding encodingFor(const TextureRange& range) {
-  const float low = std::min(range.min, 0.0f);
-  const float high = std::max(range.max, 0.0f);
-  if (!(high > low)) return {0.0f, 0.0f};
-  const float scale = (high - low) / 255.0f;
-  const float zero_code = std::round(-low / scale);
-  return {scale, -scale * zero_code};
 }
 
 void widen(std::vector<TextureRange>& whole, const std::vector<TextureRange>& part) {
@@ -257,7 +248,8 @@ class Compression {
     });
     const auto count = static_cast<std::size_t>(kTextures * map.samples->shape().channels);
     std::vector<TextureEncoding> encoding(count, TextureEncoding{0.0f, 0.0f});
-    std::transform(range.begin(), range.end(), encoding.begin(), encodingFor);
+    std::transform(range.begin(), range.end(), encoding.begin(),
+                   [](const TextureRange& reach) { return encodingFor(reach, kCodeBits); });
     return encoding;
   }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "compress/device_tiles.hpp"
+#include "compress/texture_encoding.hpp"
 #include "compress/tile_band.hpp"
 #include "device/device_context.hpp"
 #include "device/pooled_buffer.hpp"
@@ -21,18 +22,6 @@ struct TextureCoefficients {
   int textures = 0;           ///< C, 1 to 8
   int expressions = 0;        ///< N
   std::vector<float> values;  ///< K x C x N; for Eq. 5: 1/|cluster| if n lies in cluster sigma(i, k) of mask k, else 0
-};
-
-/// Smallest and largest value, in units of 1/255; min > max where there was no texel.
-struct TextureRange {
-  float min = 0.0f;
-  float max = 0.0f;
-};
-
-/// value = scale * byte + offset, in units of 1/255; scale 0 or more.
-struct TextureEncoding {
-  float scale = 1.0f;
-  float offset = 0.0f;
 };
 
 class DifferenceTextures {

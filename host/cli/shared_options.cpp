@@ -28,6 +28,9 @@ void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
       ->check(CLI::IsMember({"paper", "no-permutation"}))
       ->capture_default_str();
   command
+      .add_option("--differences", options.differences, "Difference textures of a map, and weights of a cell: 1 to 8")
+      ->capture_default_str();
+  command
       .add_option("--weight-scale", options.weight_scale, "Texels of the largest map per weight texel, along each axis")
       ->capture_default_str();
   CLI::Option* radius =

@@ -17,12 +17,15 @@
 namespace facezip {
 
 struct CompressOptions {
-  /// How fragments are put together.
+  /// How difference textures and weights are found.
   enum class Method {
-    kPaper,          ///< permutation of the clusters by coordinate descent (FaceZip, section 3.1)
+    kRefined,        ///< from the paper's result, weights and difference textures fitted in turn
+    kClosedLoop,     ///< the paper's weights, and per texel the difference textures that suit them best as decoded
+    kPaper,          ///< clusters, permuted so that seams fit (FaceZip, section 3.1)
     kNoPermutation,  ///< clusters in the order of the clustering; the paper's ablation, for comparison only
   };
   Method method = Method::kPaper;
+  int differences = 4;   ///< C, difference textures of every map and weight channels of every expression; 1 to 8
   int weight_scale = 8;  ///< texels of the largest map per weight cell, per axis; 1 to 64
   /// Poisson-disk radius of the mask samples; bare numbers are in the mesh's unit. The paper's 3 cm.
   geometry::Length mask_radius{3.0, geometry::LengthUnit::kCentimetre};

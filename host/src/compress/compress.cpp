@@ -35,7 +35,6 @@ using namespace compress;
 namespace fs = std::filesystem;
 
 constexpr int kCodeBits = 8;  // of a texel of a difference texture
-constexpr int kTextures = 4;  // C: the paper's four, whose weights are one RGBA texel
 
 void requireSaneOptions(const CompressOptions& options) {
   const auto require = [](bool holds, const char* option, const char* expected, const std::string& got) {
@@ -43,6 +42,8 @@ void requireSaneOptions(const CompressOptions& options) {
   };
   require(options.weight_scale >= 1 && options.weight_scale <= 64, "--weight-scale", "1 to 64",
           fmt::format("{}", options.weight_scale));
+  require(options.differences >= 1 && options.differences <= 8, "--differences", "1 to 8",
+          fmt::format("{}", options.differences));
   require(options.restarts >= 1, "--restarts", "at least 1", fmt::format("{}", options.restarts));
   require(options.cluster_restarts >= 1, "--cluster-restarts", "at least 1",
           fmt::format("{}", options.cluster_restarts));
@@ -127,7 +128,7 @@ class Compression {
     grid_ = raster::makeWeightGrid(*texel_masks_, reference, options_.weight_scale);
     clock_.book("weight grid");
     planBands();
-    if (expressions() <= kTextures) {
+    if (expressions() <= options_.differences) {
       progress_.note(fmt::format("{} expression{}: each gets a difference texture of its own", expressions(),
                                  expressions() == 1 ? "" : "s"));
     }
@@ -135,12 +136,12 @@ class Compression {
 
   void planBands() {
     const std::uint64_t cells = grid_.cells.cells();
-    const std::uint64_t resident = cells * static_cast<std::uint64_t>(expressions()) * kTextures +
+    const std::uint64_t resident = cells * static_cast<std::uint64_t>(expressions() * options_.differences) +
                                    grid_.cells.mask_index.size() * (sizeof(int) + sizeof(float)) + cells * sizeof(int);
     int rows = 0;
     std::uint64_t decoded = 0;
     for (const OpenMap& map : maps_.maps) {
-      const BandCost cost = bandCost(bandShape(*map.samples, 0), kTextures, report_.masks);
+      const BandCost cost = bandCost(bandShape(*map.samples, 0), options_.differences, report_.masks);
       const int planned =
           planBandRows(cost, map.samples->shape().height, options_.memory_bytes, resident, context_.info());
       rows = rows == 0 ? planned : std::min(rows, planned);
@@ -209,7 +210,7 @@ class Compression {
   void assign(const GramMatrices& grams) {
     progress_.stage("clustering", 0);
     KmeansOptions kmeans;
-    kmeans.clusters = kTextures;
+    kmeans.clusters = options_.differences;
     kmeans.restarts = options_.cluster_restarts;
     kmeans.seed = options_.seed;
     const Clustering clustering = clusterFragments(context_, grams, kmeans);
@@ -220,7 +221,8 @@ class Compression {
     clock_.book("seam costs");
     const Permutation permutation = choosePermutation(tables);
     report_.permutation_cost = permutation.cost;
-    coefficients_ = {report_.masks, kTextures, expressions(), differenceCoefficients(clustering, permutation)};
+    coefficients_ = {report_.masks, options_.differences, expressions(),
+                     differenceCoefficients(clustering, permutation)};
     texture_of_ = textureOfExpression(clustering, permutation);
     clock_.book("permutation");
     progress_.checkCancelled();
@@ -246,7 +248,7 @@ class Compression {
       textures.compute(band.tiles, band.differences, band.shape);
       widen(range, textures.range(band.tiles, band.shape));
     });
-    const auto count = static_cast<std::size_t>(kTextures * map.samples->shape().channels);
+    const auto count = static_cast<std::size_t>(options_.differences * map.samples->shape().channels);
     std::vector<TextureEncoding> encoding(count, TextureEncoding{0.0f, 0.0f});
     std::transform(range.begin(), range.end(), encoding.begin(),
                    [](const TextureRange& reach) { return encodingFor(reach, kCodeBits); });
@@ -264,7 +266,7 @@ class Compression {
     described.colour_space = map.source->colour_space;
     described.weight_scale = map.weight_scale;
     described.metric_weight = map.source->metric_weight;
-    for (int i = 0; i < kTextures; ++i) {
+    for (int i = 0; i < options_.differences; ++i) {
       PackageDifference difference;
       for (int c = 0; c < shape.channels; ++c) {
         const TextureEncoding& e = encoding[static_cast<std::size_t>(i * shape.channels + c)];
@@ -285,11 +287,11 @@ class Compression {
       const int rows = band.end - band.begin;
       const std::size_t bytes =
           static_cast<std::size_t>(rows) * static_cast<std::size_t>(band.shape.width * band.shape.channels);
-      codes.resize(bytes * kTextures);
+      codes.resize(bytes * static_cast<std::size_t>(options_.differences));
       textures.compute(band.tiles, band.differences, band.shape);
       textures.encode(band.tiles, band.shape, encoding, codes);
       const std::size_t neutral_bytes = static_cast<std::size_t>(rows) * map.samples->shape().rowBytes();
-      tbb::parallel_for(-1, kTextures, [&](int i) {
+      tbb::parallel_for(-1, options_.differences, [&](int i) {
         if (i < 0) {
           writer.writeNeutralRows(index, band.samples.first(neutral_bytes), rows);
         } else {
@@ -303,7 +305,7 @@ class Compression {
   // Weight maps (Eq. 6) of all expressions, on the grid that all maps share.
   void writeWeights(package::PackageWriter& writer) {
     progress_.stage("weight maps", 0);
-    WeightMapper mapper(context_, texture_of_, report_.masks, expressions(), kTextures);
+    WeightMapper mapper(context_, texture_of_, report_.masks, expressions(), options_.differences);
     const std::size_t cells = grid_.cells.cells();
     std::vector<std::uint8_t> codes(mapper.outputBytes(cells));
     mapper.fill(grid_.cells, 0, cells, codes);
@@ -316,9 +318,9 @@ class Compression {
     PackageDescription description;
     description.name = capture_.name;
     description.expressions = capture_.expressions;
-    description.differences = kTextures;
-    description.weights.scale.assign(kTextures, 1.0 / 255.0);
-    description.weights.offset.assign(kTextures, 0.0);
+    description.differences = options_.differences;
+    description.weights.scale.assign(static_cast<std::size_t>(options_.differences), 1.0 / 255.0);
+    description.weights.offset.assign(static_cast<std::size_t>(options_.differences), 0.0);
     description.method_json = methodJson(options_, report_, face_.region_description);
     std::vector<std::vector<TextureEncoding>> encodings;
     for (OpenMap& map : maps_.maps) {

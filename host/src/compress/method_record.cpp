@@ -8,8 +8,24 @@ namespace facezip::compress {
 namespace {
 using nlohmann::json;
 
-const char* methodName(CompressOptions::Method method) {
-  return method == CompressOptions::Method::kPaper ? "paper" : "no-permutation";
+using Method = CompressOptions::Method;
+constexpr std::pair<Method, const char*> kMethods[] = {{Method::kRefined, "refined"},
+                                                       {Method::kClosedLoop, "closed-loop"},
+                                                       {Method::kPaper, "paper"},
+                                                       {Method::kNoPermutation, "no-permutation"}};
+
+const char* methodName(Method method) {
+  for (const auto& [value, name] : kMethods) {
+    if (value == method) return name;
+  }
+  return "";
+}
+
+Method methodOf(const std::string& name, const std::string& file) {
+  for (const auto& [value, known] : kMethods) {
+    if (name == known) return value;
+  }
+  throw InputError({file, "method.name", "a method of this facezip", name, "compress the capture again"});
 }
 
 std::string lengthText(const geometry::Length& length) {
@@ -20,6 +36,7 @@ std::string lengthText(const geometry::Length& length) {
 
 std::string methodJson(const CompressOptions& options, const CompressReport& report, const std::string& region) {
   json record = {{"name", methodName(options.method)},
+                 {"differences", options.differences},
                  {"weight_scale", options.weight_scale},
                  {"mask_radius", lengthText(options.mask_radius)},
                  {"mask_cutoff", options.mask_cutoff},
@@ -43,9 +60,8 @@ CompressOptions optionsFromMethodJson(const std::string& json_text, const std::s
   try {
     const json record = json::parse(json_text);
     CompressOptions options;
-    options.method = record.at("name").get<std::string>() == methodName(CompressOptions::Method::kNoPermutation)
-                         ? CompressOptions::Method::kNoPermutation
-                         : CompressOptions::Method::kPaper;
+    options.method = methodOf(record.at("name").get<std::string>(), file);
+    options.differences = record.at("differences").get<int>();
     options.weight_scale = record.at("weight_scale").get<int>();
     options.mask_radius = geometry::parseLength(record.at("mask_radius").get<std::string>());
     options.mask_cutoff = record.at("mask_cutoff").get<double>();

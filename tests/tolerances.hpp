@@ -23,6 +23,21 @@ inline constexpr double kDifferenceTextureRelative = 2e-6;
 // (value - offset) / scale in float32 (255 * 6e-8, and as much again from the reference's own scale) decides.
 inline constexpr double kEncodeTie = 1e-3;
 
+// Difference textures of given weights, relative to full scale times the condition of the texel's system: a Cholesky
+// factorisation of up to 8 x 8 in float32 is off by a few units of 2^-24 times the condition.
+inline constexpr double kSolveRelative = 2e-6;
+
+// Squared error of a tile from the sums that its textures were solved with, relative to its energy: e - 2 b.D + D.A D
+// cancels all but the error; each sum has up to 100 float32 terms.
+inline constexpr double kFitErrorRelative = 1e-5;
+
+// Normal equations of a cell, relative to its diagonal: at most 1024 products in float32, in runs of 16 and 16.
+inline constexpr double kSystemRelative = 1e-5;
+
+// Grid weights after two sweeps: the system's error times the condition of a cell's block, which trust and smoothness
+// bound by about 1e4 in the tests.
+inline constexpr double kRelaxedWeight = 2e-2;
+
 // --- search on Gram matrices -----------------------------------------------------------------------------------------
 
 /// Seam costs, as a share of the largest squared length of a centred fragment of the pair. e^T H e has entries of H

@@ -14,3 +14,15 @@
 // none, and mad() stays two instructions on PoCL.
 #pragma OPENCL FP_CONTRACT ON
 #define FMA(a, b, c) ((a) * (b) + (c))
+
+#ifdef WEIGHT_SCALE
+// The weight grid, at 1 / WEIGHT_SCALE of the texture: cell q has its centre at texel (q + 1/2) WEIGHT_SCALE - 1/2, and a
+// texel interpolates linearly between the centres around it; beyond the outer centres the edge repeats. Positions are
+// clamped before they are split, so that the weights of the (at most) two cells along an axis always sum to 1.
+inline float cell_position(int texel, int cells) {
+  return clamp((float)(2 * texel + 1 - WEIGHT_SCALE) * (1.0f / (2 * WEIGHT_SCALE)), 0.0f, (float)(cells - 1));
+}
+
+// Cells that 16 texels in a row interpolate between, at most.
+#define CELLS_OF_16 ((14 + WEIGHT_SCALE) / WEIGHT_SCALE + 2)
+#endif

@@ -1,0 +1,65 @@
+// weight_window.hpp - a few rows of the weight grid on the device, with free weights and where they started.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "device/device_context.hpp"
+#include "device/pooled_buffer.hpp"
+
+namespace facezip::compress {
+
+/// The weight maps that are being solved for: what all windows of a compression have in common.
+struct WeightSpace {
+  int columns = 0;      ///< cells in a row of the grid
+  int rows = 0;         ///< rows of the whole grid
+  int textures = 0;     ///< C, 1 to 8
+  int expressions = 0;  ///< N
+
+  /// N as device buffers have it: a multiple of 16, the rest is 0.
+  std::size_t lanes() const { return device::roundUp(static_cast<std::size_t>(expressions), 16); }
+  std::size_t cellFloats() const { return static_cast<std::size_t>(textures) * lanes(); }
+  std::size_t rowFloats() const { return static_cast<std::size_t>(columns) * cellFloats(); }
+  /// Numbers that the normal equations of a cell take, as kernels/cl/weight_system.cl lays them out.
+  std::size_t systemEntries() const {
+    return device::roundUp(static_cast<std::size_t>(2 * textures * (textures + 1)), 16) + cellFloats();
+  }
+};
+
+/// Rows [begin, end) of the grid are held; the weights of rows [free_begin, free_end) may change.
+struct WindowRows {
+  int begin = 0;
+  int end = 0;
+  int free_begin = 0;
+  int free_end = 0;
+
+  int count() const { return end - begin; }
+};
+
+class WeightWindow {
+ public:
+  WeightWindow(device::DeviceContext& context, const WeightSpace& space);
+
+  /// Moves the window. Both arrays: [rows.count()][columns][C][lanes].
+  /// weights  where the rows stand
+  /// start    where the free rows' trust lies
+  void set(const WindowRows& rows, std::span<const float> weights, std::span<const float> start);
+
+  /// The weights now, [rows.count()][columns][C][lanes].
+  std::vector<float> weights() const;
+
+  const WeightSpace& space() const { return space_; }
+  const WindowRows& rows() const { return rows_; }
+  const cl::Buffer& weightsBuffer() const { return weights_.buffer(); }
+  const cl::Buffer& startBuffer() const { return start_.buffer(); }
+
+ private:
+  device::DeviceContext& context_;
+  WeightSpace space_;
+  WindowRows rows_;
+  device::PooledBuffer weights_;
+  device::PooledBuffer start_;
+};
+
+}  // namespace facezip::compress

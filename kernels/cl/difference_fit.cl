@@ -1,0 +1,263 @@
+// difference_fit.cl - difference textures that suit given weights best: per texel and for all channels together
+//   D = argmin sum_n |Delta_n - D^T w_n|^2 + ridge |D|^2,   w_n the bilinear weight map of expression n (FaceZip, Eq. 8)
+// A C x C system per texel, by Cholesky. With CODES the textures are rounded to their encoding while the system is
+// substituted back (Babai's nearest plane): a channel that is solved for after another makes up for that one's rounding.
+// NDRange  global {256 / (LANES * ROWS), tiles}, local any
+// Buffers  tiles          in   [tile] int2        column and row of tiles in the band
+//          texel_weights  in   [tile][256] float  weight of a texel in every sum, 0 outside the covered texels
+//          active         in   [tile][256] float  above 0 where D is wanted (gutter too); elsewhere D becomes 0
+//          differences    in   [tile][N][channel][256] DIFF_T, units of 1/255
+//          weights        in   [row][column][C][lanes] float   W_n of the cell rows from first_cell_row on, n innermost
+//          encoding       in   [C][channel] float2  scale, zero code (with CODES)
+//          textures       out  [tile][C][channel][256] float, units of 1/255
+//          errors         out  [tile][item] float2  sum over the item's covered texels of |Delta - D^T w|^2: times the
+//                                                   texel weight, and plain
+// Defines  CHANNELS, DIFF_T  as in difference.cl
+//          TEXTURES          C, 1 to 8
+//          EXPRESSIONS       N
+//          EXPRESSION_LANES  N rounded up as `weights` has it
+//          WEIGHT_SCALE      texels per cell
+//          LANES, ROWS       texels of a work-item: 16 columns by 16 rows on CPUs, one on GPUs
+//          CODES             if set, the largest code: 255 or 65535
+// Sums     fixed order: expressions; rows and lanes of an item
+
+#ifndef CHANNELS
+#define CHANNELS 3
+#define DIFF_T short
+#endif
+#ifndef TEXTURES
+#define TEXTURES 4
+#endif
+#ifndef EXPRESSIONS
+#define EXPRESSIONS 20
+#define EXPRESSION_LANES 32
+#endif
+#ifndef LANES
+#define LANES 16
+#define ROWS 16
+#endif
+#define JOIN_(a, b) a##b
+#define JOIN(a, b) JOIN_(a, b)
+#if LANES == 1
+typedef float floats;
+typedef int ints;
+typedef DIFF_T diffs;
+#define TO_FLOATS convert_float
+#define CELL_COLUMNS 2
+#else
+typedef float16 floats;
+typedef int16 ints;
+typedef JOIN(DIFF_T, 16) diffs;
+#define TO_FLOATS convert_float16
+#define CELL_COLUMNS CELLS_OF_16
+#endif
+#define PLANE (TILE_TEXELS / LANES)  // vectors between the planes of a tile
+#define PAIRS (TEXTURES * (TEXTURES + 1) / 2)
+#define PAIR(i, j) ((i) * ((i) + 1) / 2 + (j))  // j <= i
+#define CELL_FLOATS (TEXTURES * EXPRESSION_LANES)
+
+inline float sum_lanes(const floats value) {
+#if LANES == 1
+  return value;
+#else
+  const float8 half8 = value.lo + value.hi;
+  const float4 half4 = half8.lo + half8.hi;
+  const float2 half2 = half4.lo + half4.hi;
+  return half2.x + half2.y;
+#endif
+}
+
+#if LANES == 1
+// One weight at one texel. A work-item that has a single texel has no use for its neighbours' rows of cells.
+static float texel_weight(global const float* restrict upper, global const float* restrict lower, const float* hats,
+                          const float fraction, const int first_column, const int columns, const int entry) {
+  float above = 0.0f;
+  float below = 0.0f;
+#pragma unroll
+  for (int j = 0; j < CELL_COLUMNS; ++j) {
+    const ulong at = (ulong)min(first_column + j, columns - 1) * CELL_FLOATS + entry;
+    above = FMA(hats[j], upper[at], above);
+    below = FMA(hats[j], lower[at], below);
+  }
+  return FMA(below - above, fraction, above);
+}
+#else
+// Weights of all expressions on one row of cells, at the columns of the item's texels.
+static void interpolate_columns(global const float* restrict cells, const floats* hats, const int first_column,
+                                const int columns, floats weights[EXPRESSIONS][TEXTURES]) {
+  for (int n = 0; n < EXPRESSIONS; ++n) {
+#pragma unroll
+    for (int i = 0; i < TEXTURES; ++i) weights[n][i] = 0.0f;
+  }
+  for (int j = 0; j < CELL_COLUMNS; ++j) {
+    global const float* cell = cells + (ulong)min(first_column + j, columns - 1) * CELL_FLOATS;
+    const floats hat = hats[j];
+    for (int n = 0; n < EXPRESSIONS; ++n) {
+#pragma unroll
+      for (int i = 0; i < TEXTURES; ++i) weights[n][i] = FMA(hat, (floats)(cell[i * EXPRESSION_LANES + n]), weights[n][i]);
+    }
+  }
+}
+
+#endif
+
+// Factors `a` + ridge in place: L below the diagonal, 1 / L on it.
+static void factor(floats a[PAIRS], const float ridge) {
+#pragma unroll
+  for (int i = 0; i < TEXTURES; ++i) {
+#pragma unroll
+    for (int j = 0; j <= i; ++j) {
+      floats value = a[PAIR(i, j)];
+      if (i == j) value += ridge;
+#pragma unroll
+      for (int k = 0; k < j; ++k) value -= a[PAIR(i, k)] * a[PAIR(j, k)];
+      // Rounding may leave a pivot below what was added to it; it never is.
+      a[PAIR(i, j)] = i == j ? 1.0f / sqrt(fmax(value, (floats)(ridge))) : value * a[PAIR(j, j)];
+    }
+  }
+}
+
+// x of L L^T x = b for one channel, in place.
+static void solve(const floats l[PAIRS], floats x[TEXTURES], global const float2* restrict encoding, const int channel) {
+#pragma unroll
+  for (int i = 0; i < TEXTURES; ++i) {
+#pragma unroll
+    for (int j = 0; j < i; ++j) x[i] -= l[PAIR(i, j)] * x[j];
+    x[i] *= l[PAIR(i, i)];
+  }
+#pragma unroll
+  for (int i = TEXTURES - 1; i >= 0; --i) {
+#pragma unroll
+    for (int j = i + 1; j < TEXTURES; ++j) x[i] -= l[PAIR(j, i)] * x[j];
+    x[i] *= l[PAIR(i, i)];
+#ifdef CODES
+    const float2 code = encoding[i * CHANNELS + channel];
+    const float steps = code.x > 0.0f ? 1.0f / code.x : 0.0f;
+    x[i] = (floor(clamp(x[i] * steps + code.y + 0.5f, 0.0f, (float)CODES)) - code.y) * code.x;
+#endif
+  }
+}
+
+// |Delta - D^T w|^2 summed over n, from the sums that the solution was made of: e - 2 b . D + D . A D.
+static floats squared_error(const floats a[PAIRS], const floats b[TEXTURES][CHANNELS],
+                            const floats d[TEXTURES][CHANNELS], const floats e) {
+  floats error = e;
+#pragma unroll
+  for (int c = 0; c < CHANNELS; ++c) {
+#pragma unroll
+    for (int i = 0; i < TEXTURES; ++i) {
+      floats gradient = a[PAIR(i, i)] * d[i][c] - 2.0f * b[i][c];
+#pragma unroll
+      for (int j = 0; j < i; ++j) gradient += 2.0f * a[PAIR(i, j)] * d[j][c];
+      error += gradient * d[i][c];
+    }
+  }
+  return fmax(error, (floats)(0.0f));
+}
+
+kernel void difference_fit(global const int2* restrict tiles, global const floats* restrict texel_weights,
+                           global const floats* restrict active, global const diffs* restrict differences,
+                           global const float* restrict weights, global const float2* restrict encoding,
+                           global floats* restrict textures, global float2* restrict errors, const int first_row,
+                           const int first_cell_row, const int cell_columns, const int cell_rows, const float ridge) {
+  const int items = TILE_TEXELS / (LANES * ROWS);
+  const int item = (int)get_global_id(0);
+  const ulong tile = get_global_id(1);
+  const int column = item * LANES % TILE_SIDE;
+  const int row = item * LANES / TILE_SIDE * ROWS;
+  const int x0 = tiles[tile].x * TILE_SIDE + column;
+  const int y0 = first_row + tiles[tile].y * TILE_SIDE + row;
+
+  const int first_column = (int)cell_position(x0, cell_columns);
+  floats hats[CELL_COLUMNS];
+#if LANES == 1
+  const floats texel = (float)x0;
+#else
+  const floats texel = (float)x0 + (float16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+#endif
+  const floats position = clamp((2.0f * texel + (1.0f - WEIGHT_SCALE)) * (1.0f / (2 * WEIGHT_SCALE)), 0.0f,
+                                (float)(cell_columns - 1));
+  for (int j = 0; j < CELL_COLUMNS; ++j) hats[j] = fmax(1.0f - fabs(position - (float)(first_column + j)), 0.0f);
+
+#if LANES > 1
+  floats above[EXPRESSIONS][TEXTURES];
+  floats below[EXPRESSIONS][TEXTURES];
+  int held = -1;  // row of cells in `above`
+#endif
+  float2 error_sum = (float2)(0.0f);
+  for (int r = 0; r < ROWS; ++r) {
+    const float cell_y = cell_position(y0 + r, cell_rows);
+    const int cell_row = (int)cell_y;
+    const float fraction = cell_y - (float)cell_row;
+    const int next_row = min(cell_row + 1, cell_rows - 1);
+    global const float* upper = weights + (ulong)(cell_row - first_cell_row) * cell_columns * CELL_FLOATS;
+    global const float* lower = upper + (ulong)(next_row - cell_row) * cell_columns * CELL_FLOATS;
+#if LANES > 1
+    if (cell_row != held) {
+      interpolate_columns(upper, hats, first_column, cell_columns, above);
+      interpolate_columns(lower, hats, first_column, cell_columns, below);
+      held = cell_row;
+    }
+#endif
+    const int line = ((row + r) * TILE_SIDE + column) / LANES;
+    global const diffs* difference = differences + tile * (ulong)(EXPRESSIONS * CHANNELS * PLANE) + line;
+    floats a[PAIRS];
+    floats b[TEXTURES][CHANNELS];
+    floats e = 0.0f;
+#pragma unroll
+    for (int p = 0; p < PAIRS; ++p) a[p] = 0.0f;
+#pragma unroll
+    for (int i = 0; i < TEXTURES; ++i) {
+#pragma unroll
+      for (int c = 0; c < CHANNELS; ++c) b[i][c] = 0.0f;
+    }
+    for (int n = 0; n < EXPRESSIONS; ++n) {
+      floats w[TEXTURES];
+#pragma unroll
+      for (int i = 0; i < TEXTURES; ++i) {
+#if LANES > 1
+        w[i] = FMA(below[n][i] - above[n][i], (floats)(fraction), above[n][i]);
+#else
+        w[i] = texel_weight(upper, lower, hats, fraction, first_column, cell_columns, i * EXPRESSION_LANES + n);
+#endif
+      }
+#pragma unroll
+      for (int i = 0; i < TEXTURES; ++i) {
+#pragma unroll
+        for (int j = 0; j <= i; ++j) a[PAIR(i, j)] = FMA(w[i], w[j], a[PAIR(i, j)]);
+      }
+#pragma unroll
+      for (int c = 0; c < CHANNELS; ++c) {
+        const floats delta = TO_FLOATS(difference[c * PLANE]);
+        e = FMA(delta, delta, e);
+#pragma unroll
+        for (int i = 0; i < TEXTURES; ++i) b[i][c] = FMA(w[i], delta, b[i][c]);
+      }
+      difference += CHANNELS * PLANE;
+    }
+
+    floats l[PAIRS];
+#pragma unroll
+    for (int p = 0; p < PAIRS; ++p) l[p] = a[p];
+    factor(l, ridge);
+    const ints wanted = active[tile * PLANE + line] > (floats)(0.0f);
+    floats d[TEXTURES][CHANNELS];
+#pragma unroll
+    for (int c = 0; c < CHANNELS; ++c) {
+      floats x[TEXTURES];
+#pragma unroll
+      for (int i = 0; i < TEXTURES; ++i) x[i] = b[i][c];
+      solve(l, x, encoding, c);
+#pragma unroll
+      for (int i = 0; i < TEXTURES; ++i) {
+        d[i][c] = wanted ? x[i] : (floats)(0.0f);
+        textures[(tile * (TEXTURES * CHANNELS) + i * CHANNELS + c) * PLANE + line] = d[i][c];
+      }
+    }
+    const floats weight = texel_weights[tile * PLANE + line];
+    const floats error = squared_error(a, b, d, e);
+    error_sum.x += sum_lanes(error * weight);
+    error_sum.y += sum_lanes(weight > (floats)(0.0f) ? error : (floats)(0.0f));
+  }
+  errors[tile * items + item] = error_sum;
+}

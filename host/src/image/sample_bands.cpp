@@ -59,14 +59,26 @@ void SampleBands::decodeBand(int begin, int end, std::span<std::byte> out) {
   decode_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void SampleBands::readBand(int begin, int end, std::span<std::byte> out) {
-  const std::size_t offset = bandBytes(begin);  // bands before this one hold all their textures
-  if (kept_) {
-    scratch_->read(offset, out);
-    return;
+std::size_t SampleBands::scratchOffset(std::size_t image, int row) const {
+  return (image * static_cast<std::size_t>(shape_.height) + static_cast<std::size_t>(row)) * shape_.rowBytes();
+}
+
+void SampleBands::readRows(int begin, int end, std::span<std::byte> out) {
+  assert(out.size() == bandBytes(end - begin));
+  if (!kept_) return decodeBand(begin, end, out);
+  const std::size_t image_bytes = static_cast<std::size_t>(end - begin) * shape_.rowBytes();
+  for (std::size_t i = 0; i < readers_.size(); ++i) {
+    scratch_->read(scratchOffset(i, begin), out.subspan(i * image_bytes, image_bytes));
   }
-  decodeBand(begin, end, out);
-  if (scratch_) scratch_->write(offset, out);
+}
+
+void SampleBands::readBand(int begin, int end, std::span<std::byte> out) {
+  readRows(begin, end, out);
+  if (kept_ || !scratch_) return;
+  const std::size_t image_bytes = static_cast<std::size_t>(end - begin) * shape_.rowBytes();
+  for (std::size_t i = 0; i < readers_.size(); ++i) {
+    scratch_->write(scratchOffset(i, begin), out.subspan(i * image_bytes, image_bytes));
+  }
 }
 
 void SampleBands::forEachBand(int band_rows, Progress& progress, const std::function<void(const SampleBand&)>& visit) {

@@ -38,9 +38,13 @@ class SampleBands {
   void keepDecoded(const std::filesystem::path& directory) { scratch_ = std::make_unique<ScratchFile>(directory); }
 
   /// Calls `visit` for each band from top to bottom. The next band is read while `visit` works on this one; textures
-  /// are decoded side by side. Every pass must use the same band_rows. Throws InputError for an unreadable texture,
-  /// what `visit` throws, and Cancelled.
+  /// are decoded side by side. Throws InputError for an unreadable texture, what `visit` throws, and Cancelled.
   void forEachBand(int band_rows, Progress& progress, const std::function<void(const SampleBand&)>& visit);
+
+  /// Reads rows [begin, end) of every texture, as a SampleBand holds them: from the scratch file once a pass has filled
+  /// it. Passes over the rows must go from top to bottom where there is none. Throws InputError, OutputError.
+  void readRows(int begin, int end, std::span<std::byte> out);
+  std::size_t bandBytes(int rows) const;
 
   /// Seconds that forEachBand waited for samples, over all passes.
   double waitSeconds() const { return wait_seconds_; }
@@ -50,7 +54,7 @@ class SampleBands {
  private:
   void readBand(int begin, int end, std::span<std::byte> out);
   void decodeBand(int begin, int end, std::span<std::byte> out);
-  std::size_t bandBytes(int rows) const;
+  std::size_t scratchOffset(std::size_t image, int row) const;
 
   CaptureMap map_;
   ImageShape shape_;

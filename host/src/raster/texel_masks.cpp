@@ -109,32 +109,61 @@ compress::TileMasks TexelMasks::tiles(const UvRaster& raster, int begin, int end
   return whole;
 }
 
-compress::TileMasks coverageTiles(const UvRaster& raster, int begin, int end) {
-  const std::vector<TexelSample> samples = raster.coveredRows(begin, end);
-  const int tile_columns = (raster.width() + kTileSide - 1) / kTileSide;
-  TileMasks out;
-  std::vector<float> weights(kTileTexels);
-  for (int tile_y = 0; tile_y * kTileSide < end - begin; ++tile_y) {
-    const int y_end = std::min(end - begin, (tile_y + 1) * kTileSide);
-    for (int tile_x = 0; tile_x < tile_columns; ++tile_x) {
-      const int x_end = std::min(raster.width(), (tile_x + 1) * kTileSide);
-      std::fill(weights.begin(), weights.end(), 0.0f);
+namespace {
+
+/// Calls visit(tile, active, covered) for every tile with the 256 values of each: 1 where a texel has a triangle of the
+/// region (its own, or its neighbour's in the gutter), and where it is covered.
+template <typename Visit>
+void forEachTile(const std::vector<TexelSample>& samples, int width, int rows, const Visit& visit) {
+  std::vector<float> active(kTileTexels);
+  std::vector<float> covered(kTileTexels);
+  for (int tile_y = 0; tile_y * kTileSide < rows; ++tile_y) {
+    const int y_end = std::min(rows, (tile_y + 1) * kTileSide);
+    for (int tile_x = 0; tile_x * kTileSide < width; ++tile_x) {
+      const int x_end = std::min(width, (tile_x + 1) * kTileSide);
+      std::fill(active.begin(), active.end(), 0.0f);
+      std::fill(covered.begin(), covered.end(), 0.0f);
       bool any = false;
       for (int y = tile_y * kTileSide; y < y_end; ++y) {
         for (int x = tile_x * kTileSide; x < x_end; ++x) {
-          const auto texel =
-              static_cast<std::size_t>(y) * static_cast<std::size_t>(raster.width()) + static_cast<std::size_t>(x);
-          if (samples[texel].kind != TexelSample::Kind::kCovered) continue;
-          weights[static_cast<std::size_t>((y - tile_y * kTileSide) * kTileSide + x - tile_x * kTileSide)] = 1.0f;
+          const TexelSample& sample =
+              samples[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+          if (sample.triangle < 0) continue;
+          const auto t = static_cast<std::size_t>((y - tile_y * kTileSide) * kTileSide + x - tile_x * kTileSide);
+          active[t] = 1.0f;
+          if (sample.kind == TexelSample::Kind::kCovered) covered[t] = 1.0f;
           any = true;
         }
       }
-      if (!any) continue;
-      out.tiles.push_back({tile_x, tile_y});
-      out.texel_weights.insert(out.texel_weights.end(), weights.begin(), weights.end());
+      if (any) visit(TilePosition{tile_x, tile_y}, active, covered);
     }
   }
+}
+
+}  // namespace
+
+compress::TileMasks coverageTiles(const UvRaster& raster, int begin, int end) {
+  TileMasks out;
+  forEachTile(raster.coveredRows(begin, end), raster.width(), end - begin,
+              [&](TilePosition tile, const std::vector<float>&, const std::vector<float>& covered) {
+                out.tiles.push_back(tile);
+                out.texel_weights.insert(out.texel_weights.end(), covered.begin(), covered.end());
+              });
   out.mask_begin.assign(out.tiles.size() + 1, 0);
+  return out;
+}
+
+compress::TileMasks activeTiles(const UvRaster& raster, int begin, int end) {
+  TileMasks out;
+  out.mask_begin.push_back(0);
+  forEachTile(raster.rows(begin, end), raster.width(), end - begin,
+              [&](TilePosition tile, const std::vector<float>& active, const std::vector<float>& covered) {
+                out.tiles.push_back(tile);
+                out.mask_index.push_back(0);
+                out.mask_weights.insert(out.mask_weights.end(), active.begin(), active.end());
+                out.mask_begin.push_back(static_cast<int>(out.mask_index.size()));
+                out.texel_weights.insert(out.texel_weights.end(), covered.begin(), covered.end());
+              });
   return out;
 }
 

@@ -45,6 +45,10 @@ class TexelMasks {
 /// need.
 compress::TileMasks coverageTiles(const UvRaster& raster, int begin, int end);
 
+/// The tiles of rows [begin, end) that hold covered or gutter texels, each with one mask (index 0): 1 at those texels,
+/// 0 elsewhere. Texel weights are 1 at the covered ones.
+compress::TileMasks activeTiles(const UvRaster& raster, int begin, int end);
+
 /// Adds the pairs of masks that share a tile to `overlaps` (K x K, upper triangle).
 void markOverlaps(const compress::TileMasks& tiles, int mask_count, std::vector<bool>& overlaps);
 

@@ -85,6 +85,7 @@ WeightGrid makeWeightGrid(const TexelMasks& masks, const UvRaster& raster, int s
     }
   });
   const std::vector<int> source = nearestFilled(cells, grid.width, grid.height);
+  for (const SparseRow& cell : cells) grid.covered.push_back(cell.mask_index.empty() ? 0 : 1);
   compress::CellMasks& out = grid.cells;
   out.cell_begin.push_back(0);
   for (const int from : source) {

@@ -1,0 +1,227 @@
+#include "compress/refinement.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <memory>
+#include <numeric>
+
+#include "compress/difference.hpp"
+#include "compress/difference_fit.hpp"
+#include "compress/map_bands.hpp"
+#include "compress/texture_range.hpp"
+#include "compress/weight_system.hpp"
+#include "image/sample_window.hpp"
+
+namespace facezip::compress {
+namespace {
+
+/// One map of the window on the device.
+class MapWindow {
+ public:
+  MapWindow(device::DeviceContext& context, OpenMap& map, const WeightSpace& space)
+      : map_(map),
+        context_(context),
+        window_(*map.samples),
+        tiles_(context),
+        samples_(context, "samples of a band", CL_MEM_READ_ONLY),
+        differences_(context, "differences of a band"),
+        tile_at_(context, "lookup of tiles", CL_MEM_READ_ONLY),
+        fit_(context, space),
+        finder_(context, space.textures) {}
+
+  double metricWeight() const { return map_.source->metric_weight; }
+
+  /// Loads the texels that rows [free_begin, free_end) of cells reach.
+  void moveTo(int free_begin, int free_end, const RefinementProblem& problem) {
+    const int height = map_.samples->shape().height;
+    const int halo = windowHalo(map_.weight_scale);
+    const int own_begin = std::min(free_begin * map_.weight_scale, height);
+    const int own_end = std::min(free_end * map_.weight_scale, height);
+    window_.moveTo(std::max(0, own_begin - halo), std::min(height, own_end + halo));
+    shape_ = bandShape(*map_.samples, window_.end() - window_.begin());
+    const TileMasks masks = problem.make_tiles(map_, window_.begin(), window_.end());
+    const auto first_behind = [&](int row) {
+      return static_cast<std::size_t>(
+          std::partition_point(masks.tiles.begin(), masks.tiles.end(),
+                               [&](const TilePosition& tile) { return window_.begin() + tile.y * kTileSide < row; }) -
+          masks.tiles.begin());
+    };
+    own_first_ = first_behind(own_begin);
+    own_end_ = first_behind(own_end);
+    tiles_.upload(masks);
+    tile_at_.upload(std::span<const int>(tileLookup(masks, shape_)));
+    const cl::Buffer& raw = samples_.upload(window_.samples());
+    differences_.reserve(differenceBufferBytes(shape_, masks.tiles.size()));
+    computeDifferences(context_, tiles_, shape_, raw, differences_.buffer());
+  }
+
+  void fit(const WeightWindow& weights, float ridge) { fit_.compute(band(), weights, ridge); }
+
+  /// Squared error over the texels of the free rows themselves.
+  FitError error() {
+    const std::vector<FitError> errors = fit_.errors();
+    FitError sum;
+    for (std::size_t t = own_first_; t < own_end_; ++t) {
+      sum.weighted += errors[t].weighted;
+      sum.plain += errors[t].plain;
+    }
+    return sum;
+  }
+
+  void addTo(WeightSystem& system, const WeightWindow& weights) {
+    system.add(band(), tile_at_.buffer(), fit_.textures(), weights, metricWeight());
+  }
+
+  std::vector<TextureRange> range() { return finder_.find(tiles_, shape_, fit_.textures(), own_first_, own_end_); }
+
+ private:
+  GridBand band() const { return {tiles_, shape_, differences_.buffer(), window_.begin(), map_.weight_scale}; }
+
+  OpenMap& map_;
+  device::DeviceContext& context_;
+  image::SampleWindow window_;
+  BandShape shape_;
+  DeviceTiles tiles_;
+  device::PooledBuffer samples_;
+  device::PooledBuffer differences_;
+  device::PooledBuffer tile_at_;
+  DifferenceFit fit_;
+  TextureRangeFinder finder_;
+  std::size_t own_first_ = 0;
+  std::size_t own_end_ = 0;
+};
+
+class Refiner {
+ public:
+  Refiner(device::DeviceContext& context, const RefinementProblem& problem, const RefinementOptions& options)
+      : context_(context),
+        problem_(problem),
+        options_(options),
+        window_(context, problem.space),
+        system_(context, problem.space),
+        result_(problem.space) {
+    assert(problem.cell_energy > 0.0 && problem.window_rows > 0);
+    for (OpenMap* map : problem.maps) maps_.push_back(std::make_unique<MapWindow>(context, *map, problem.space));
+    result_.ranges.resize(maps_.size());
+    result_.start_errors.resize(maps_.size(), 0.0);
+    result_.errors.assign(static_cast<std::size_t>(options.most_sweeps) + 1, 0.0);
+  }
+
+  Refinement run(Progress& progress) {
+    const int rows = problem_.space.rows;
+    progress.stage("refining", static_cast<std::size_t>(rows));
+    for (int begin = 0; begin < rows; begin += problem_.window_rows) {
+      const int end = std::min(begin + problem_.window_rows, rows);
+      moveTo(begin, end);
+      sweep(progress);
+      keep();
+      progress.advance(static_cast<std::size_t>(end));
+    }
+    return std::move(result_);
+  }
+
+ private:
+  void moveTo(int begin, int end) {
+    WindowRows rows{begin, end, begin, end};
+    for (std::size_t m = 0; m < maps_.size(); ++m) {
+      maps_[m]->moveTo(begin, end, problem_);
+      const int scale = problem_.maps[m]->weight_scale;
+      const int halo = windowHalo(scale);
+      const WindowRows reached =
+          cellRowsOf(std::max(0, begin * scale - halo), end * scale + halo, scale, problem_.space.rows);
+      rows.begin = std::min(rows.begin, reached.begin);
+      rows.end = std::max(rows.end, reached.end);
+    }
+    const std::size_t row_floats = problem_.space.rowFloats();
+    std::vector<float> start(static_cast<std::size_t>(rows.count()) * row_floats);
+    decodeRows(problem_.start, problem_.space, rows.begin, rows.end, start);
+    std::vector<float> weights = start;
+    result_.weights.load(rows.begin, begin,
+                         std::span(weights).first(static_cast<std::size_t>(begin - rows.begin) * row_floats));
+    window_.set(rows, weights, start);
+  }
+
+  /// Fits the difference textures; returns the squared error, texel and metric weights in it.
+  double fit() {
+    const float ridge = ridgeOf(options_, problem_.space);
+    for (const auto& map : maps_) map->fit(window_, ridge);
+    double error = 0.0;
+    for (const auto& map : maps_) error += map->metricWeight() * map->error().weighted;
+    return error;
+  }
+
+  void sweep(Progress& progress) {
+    double error = fit();
+    for (std::size_t m = 0; m < maps_.size(); ++m) result_.start_errors[m] += maps_[m]->error().plain;
+    result_.errors[0] += error;
+    bool done = false;
+    for (int sweep = 1; sweep <= options_.most_sweeps; ++sweep) {
+      if (!done) {
+        progress.checkCancelled();
+        solveWeights();
+        const double before = error;
+        error = fit();
+        done = before - error < options_.least_gain * before;
+      }
+      result_.errors[static_cast<std::size_t>(sweep)] += error;
+    }
+  }
+
+  void solveWeights() {
+    system_.clear();
+    for (const auto& map : maps_) map->addTo(system_, window_);
+    system_.relax(window_, options_.relax_sweeps, static_cast<float>(options_.smoothness * problem_.cell_energy),
+                  static_cast<float>(options_.trust * problem_.cell_energy));
+  }
+
+  void keep() {
+    const WindowRows& rows = window_.rows();
+    const std::size_t row_floats = problem_.space.rowFloats();
+    const std::vector<float> weights = window_.weights();
+    result_.weights.store(
+        rows.free_begin, rows.free_end,
+        std::span(weights).subspan(static_cast<std::size_t>(rows.free_begin - rows.begin) * row_floats,
+                                   static_cast<std::size_t>(rows.free_end - rows.free_begin) * row_floats));
+    for (std::size_t m = 0; m < maps_.size(); ++m) widen(result_.ranges[m], maps_[m]->range());
+  }
+
+  device::DeviceContext& context_;
+  const RefinementProblem& problem_;
+  const RefinementOptions& options_;
+  WeightWindow window_;
+  WeightSystem system_;
+  std::vector<std::unique_ptr<MapWindow>> maps_;
+  Refinement result_;
+};
+
+}  // namespace
+
+Refinement refine(device::DeviceContext& context, const RefinementProblem& problem, const RefinementOptions& options,
+                  Progress& progress) {
+  return Refiner(context, problem, options).run(progress);
+}
+
+float ridgeOf(const RefinementOptions& options, const WeightSpace& space) {
+  return static_cast<float>(options.ridge * space.expressions / space.textures);
+}
+
+int windowRowStep(std::span<OpenMap* const> maps) {
+  int step = 1;
+  for (const OpenMap* map : maps) step = std::lcm(step, kTileSide / std::gcd(kTileSide, map->weight_scale));
+  return step;
+}
+
+int windowHalo(int weight_scale) { return ((weight_scale + 1) / 2 + kTileSide - 1) / kTileSide * kTileSide; }
+
+WindowRows cellRowsOf(int begin, int end, int weight_scale, int grid_rows) {
+  const auto position = [&](int row) { return (static_cast<double>(row) + 0.5) / weight_scale - 0.5; };
+  WindowRows rows;
+  rows.begin = std::clamp(static_cast<int>(std::floor(position(begin))), 0, grid_rows - 1);
+  rows.end =
+      std::clamp(static_cast<int>(std::floor(position(std::max(begin, end - 1)))) + 2, rows.begin + 1, grid_rows);
+  rows.free_begin = rows.free_end = rows.begin;
+  return rows;
+}
+
+}  // namespace facezip::compress

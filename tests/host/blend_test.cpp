@@ -61,11 +61,12 @@ std::vector<double> expectedFrame(const SamplePackage& sample, std::size_t m, co
     textures.scale.push_back(map.differences[i].scale);
     textures.offset.push_back(map.differences[i].offset);
   }
+  const std::size_t set = static_cast<std::size_t>(map.weight_set);
+  const PackageWeights& w = d.weights[set];
   const reference::WeightMaps weights{
-      d.weights.tile_width,    d.weights.tile_height, d.differences,   static_cast<int>(d.expressions.size()),
-      toCodes(sample.weights), d.weights.scale,       d.weights.offset};
-  return reference::blendFrame(textures, reference::blendWeights(weights, beta), d.weights.tile_width,
-                               d.weights.tile_height);
+      w.tile_width, w.tile_height, d.differences, static_cast<int>(d.expressions.size()), toCodes(sample.weights[set]),
+      w.scale,      w.offset};
+  return reference::blendFrame(textures, reference::blendWeights(weights, beta), w.tile_width, w.tile_height);
 }
 
 std::vector<float> someWeights(std::size_t expressions) {
@@ -179,10 +180,11 @@ TEST(Blender, IsLinearBeforeRounding) {
   }
 }
 
-TEST(Blender, BlendsEveryMapOfTheGridAndManyFrames) {
+TEST(Blender, BlendsEveryMapWithItsWeightsAndManyFrames) {
   const test::TemporaryDirectory folder;
-  SamplePackage sample =
-      test::makeSample({{"albedo", 40, 24, 3, SampleType::kUint8, 8}, {"normal", 80, 48, 3, SampleType::kUint16, 16}});
+  SamplePackage sample = test::makeSample({{"albedo", 40, 24, 3, SampleType::kUint8, 8, 0},
+                                           {"height", 37, 21, 1, SampleType::kUint8, 4, 1},
+                                           {"normal", 80, 48, 3, SampleType::kUint16, 16, 0}});
   test::writeSample(sample, folder.path());
   const Package package = Package::open(folder.path());
   Blender first(package, testDevice());
@@ -190,7 +192,7 @@ TEST(Blender, BlendsEveryMapOfTheGridAndManyFrames) {
   for (int frame = 0; frame < 5; ++frame) {
     std::vector<float> beta(5, 0.0f);
     beta[static_cast<std::size_t>(frame)] = 0.7f;
-    for (const int m : {0, 1}) {
+    for (const int m : {0, 1, 2}) {
       const std::vector<std::byte> got = blendFrame(blender, package, m, beta);
       const std::vector<double> expected = expectedFrame(sample, static_cast<std::size_t>(m), beta);
       const SampleType type = package.maps()[static_cast<std::size_t>(m)].sample_type;
@@ -250,12 +252,12 @@ TEST(PackageFormat, WorkedExampleGivesItsTestVectors) {
   const test::TemporaryDirectory folder;
   io::createDirectories(folder / "albedo");
   io::writeTextFile(folder / "package.json", R"({
-    "format": "facezip-package", "version": 1, "generator": "by hand", "name": "example",
+    "format": "facezip-package", "version": 2, "generator": "by hand", "name": "example",
     "expressions": ["smile", "jawOpen"], "differences": 2,
-    "weights": {"files": ["weights.png"], "columns": 2, "rows": 1, "tile_width": 2, "tile_height": 1, "border": 1,
-                "scale": [0.00392156862745098, 0.0078125], "offset": [0, -1]},
+    "weights": [{"files": ["weights.png"], "columns": 2, "rows": 1, "tile_width": 2, "tile_height": 1, "border": 1,
+                 "scale": [0.00392156862745098, 0.0078125], "offset": [0, -1]}],
     "maps": [{"name": "albedo", "width": 16, "height": 8, "channels": 1, "sample_type": "8-bit", "colour_space": "sRGB",
-              "weight_scale": 8, "metric_weight": 1, "neutral": {"file": "albedo/neutral.png"},
+              "weights": 0, "weight_scale": 8, "metric_weight": 1, "neutral": {"file": "albedo/neutral.png"},
               "differences": [{"file": "albedo/difference_0.png", "scale": [0.5], "offset": [-64]},
                               {"file": "albedo/difference_1.png", "scale": [1.0], "offset": [-128]}]}],
     "method": {}})");

@@ -62,25 +62,64 @@ TEST_P(PackageContents, ComeBackAsTheyWereWritten) {
 INSTANTIATE_TEST_SUITE_P(TypesChannelsDifferences, PackageContents,
                          testing::Combine(testing::Values(SampleType::kUint8, SampleType::kUint16,
                                                           SampleType::kFloat32),
-                                          testing::Values(1, 2, 3, 4), testing::Values(1, 4, 6)));
+                                          testing::Values(1, 2, 3, 4), testing::Values(1, 3, 4, 5, 8)));
 
-TEST(WeightAtlas, ComesBackAndRepeatsEdgesInTheBorder) {
-  for (const int differences : {1, 2, 3, 4, 5, 8}) {
+/// [N][tile_height][tile_width][C], as PackageWriter::writeWeights takes it.
+std::vector<std::byte> readWeights(const PackageDescription& description, int set, const fs::path& directory) {
+  const PackageWeights& weights = description.weights[static_cast<std::size_t>(set)];
+  const int cells = static_cast<int>(description.expressions.size()) * weights.tile_width * weights.tile_height;
+  std::vector<std::byte> codes(static_cast<std::size_t>(cells * description.differences));
+  package::readWeightAtlas(description, set, directory,
+                           [&](int n, int y, int first, int count, std::span<const std::byte> row) {
+                             for (std::size_t b = 0; b < row.size(); ++b) {
+                               const int x = static_cast<int>(b) / count, i = first + static_cast<int>(b) % count;
+                               const int cell = (n * weights.tile_height + y) * weights.tile_width + x;
+                               codes[static_cast<std::size_t>(cell * description.differences + i)] = row[b];
+                             }
+                           });
+  return codes;
+}
+
+TEST(WeightAtlas, ComesBackWhateverTheNumberOfChannels) {
+  for (int differences = 1; differences <= 8; ++differences) {
     const test::TemporaryDirectory folder;
     SamplePackage sample = makeSample({{}}, 7, differences);
     test::writeSample(sample, folder.path());
-    const PackageWeights& weights = sample.description.weights;
-    std::vector<std::byte> codes(sample.weights.size());
-    package::readWeightAtlas(sample.description, folder.path(),
-                             [&](int n, int y, int first, int count, std::span<const std::byte> row) {
-                               for (std::size_t b = 0; b < row.size(); ++b) {
-                                 const int x = static_cast<int>(b) / count, i = first + static_cast<int>(b) % count;
-                                 const int cell = (n * weights.tile_height + y) * weights.tile_width + x;
-                                 codes[static_cast<std::size_t>(cell * differences + i)] = row[b];
-                               }
-                             });
-    EXPECT_EQ(codes, sample.weights) << differences;
+    EXPECT_EQ(readWeights(sample.description, 0, folder.path()), sample.weights[0]) << differences;
+    const std::vector<std::string>& files = sample.description.weights[0].files;
+    ASSERT_EQ(files.size(), differences > 4 ? 2u : 1u);
+    EXPECT_EQ(image::readImage(folder / "weights.png").shape.channels, std::min(differences, 4));
+    if (differences > 4) {
+      EXPECT_EQ(image::readImage(folder / "weights_1.png").shape.channels, differences - 4);
+    }
   }
+}
+
+TEST(WeightAtlas, SetsAreFilesOfTheFirstMapThatUsesThem) {
+  const test::TemporaryDirectory folder;
+  SamplePackage sample = makeSample({{"albedo", 40, 24, 3, SampleType::kUint8, 8, 0},
+                                     {"normal", 80, 48, 3, SampleType::kUint8, 8, 1},
+                                     {"specular", 40, 24, 1, SampleType::kUint8, 4, 1},
+                                     {"height", 13, 9, 1, SampleType::kFloat32, 4, 2}},
+                                    5, 6);
+  test::writeSample(sample, folder.path());
+  const Package package = Package::open(folder.path());
+  ASSERT_EQ(package.weightSets().size(), 3u);
+  const std::vector<std::string> names[] = {{"albedo/weights.png", "albedo/weights_1.png"},
+                                            {"normal/weights.png", "normal/weights_1.png"},
+                                            {"height/weights.png", "height/weights_1.png"}};
+  for (int set = 0; set < 3; ++set) {
+    const PackageWeights& weights = package.weightSets()[static_cast<std::size_t>(set)];
+    EXPECT_EQ(weights.files, names[set]);
+    EXPECT_EQ(weights.scale, sample.description.weights[static_cast<std::size_t>(set)].scale);
+    EXPECT_EQ(readWeights(package.description(), set, folder.path()), sample.weights[static_cast<std::size_t>(set)]);
+  }
+  EXPECT_EQ(package.weightSets()[1].tile_width, 10);
+  EXPECT_EQ(package.weightSets()[2].tile_height, 3);
+  EXPECT_EQ(package.maps()[2].weight_set, 1);
+}
+
+TEST(WeightAtlas, RepeatsEdgesInTheBorder) {
   const test::TemporaryDirectory folder;
   SamplePackage sample = makeSample();
   test::writeSample(sample, folder.path());
@@ -88,7 +127,8 @@ TEST(WeightAtlas, ComesBackAndRepeatsEdgesInTheBorder) {
   const auto cell = [&](int x, int y) {
     return reinterpret_cast<const std::uint32_t*>(atlas.samples.data())[y * atlas.shape.width + x];
   };
-  const int width = sample.description.weights.tile_width, height = sample.description.weights.tile_height;
+  const PackageWeights& weights = sample.description.weights[0];
+  const int width = weights.tile_width, height = weights.tile_height;
   const int left = width + 2;  // the second tile
   EXPECT_EQ(cell(left, 0), cell(left + 1, 1));
   EXPECT_EQ(cell(left + width + 1, height + 1), cell(left + width, height));
@@ -117,6 +157,7 @@ TEST(Package, CountsBytesAsTheRendererKeepsThem) {
   test::writeSample(sample, folder / "package");
   const Package package = Package::open(folder / "package" / "package.json");
   EXPECT_EQ(package.bytesInMemory(), 40u * 24 * 3 * 5 + 20u * 12 * (4 + 4) + 5u * 5 * 3 * 4);
+  const std::uint64_t shared = package.bytesInMemory();
   std::uint64_t bytes = 0;
   for (const auto& entry : fs::recursive_directory_iterator(folder.path())) {
     if (entry.is_regular_file()) bytes += entry.file_size();
@@ -124,6 +165,11 @@ TEST(Package, CountsBytesAsTheRendererKeepsThem) {
   EXPECT_EQ(package.bytesOnDisk(), bytes);
   EXPECT_EQ(package.mapIndex("height"), 1);
   EXPECT_THROW(package.mapIndex("specular"), InputError);
+
+  SamplePackage own =
+      makeSample({{"albedo", 40, 24, 3, SampleType::kUint8, 8, 0}, {"height", 20, 12, 1, SampleType::kFloat32, 2, 1}});
+  test::writeSample(own, folder / "own");
+  EXPECT_EQ(Package::open(folder / "own").bytesInMemory(), shared + 10u * 6 * 5 * 4);
 }
 
 TEST(Package, MissingDirectoryAndDescriptionAreNamed) {
@@ -171,11 +217,12 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Corruption{"format", [](json& j) { j["format"] = "zip"; }, "format: expected \"facezip-package\""},
         Corruption{"no_format", [](json& j) { j.erase("format"); }, "format: got no such field"},
-        Corruption{"newer", [](json& j) { j["version"] = 2; },
-                   "version: expected 1, the version that this facezip reads, got 2; update facezip"},
-        Corruption{"older", [](json& j) { j["version"] = 0; }, "version: expected 1"},
-        Corruption{"version_text", [](json& j) { j["version"] = "1"; }, "version: expected an integer"},
-        Corruption{"version_real", [](json& j) { j["version"] = 1.0; }, "version: expected an integer"},
+        Corruption{"newer", [](json& j) { j["version"] = 3; },
+                   "version: expected 2, the version that this facezip reads, got 3; update facezip"},
+        Corruption{"older", [](json& j) { j["version"] = 1; },
+                   "version: expected 2, the version that this facezip reads, got 1; write the package again"},
+        Corruption{"version_text", [](json& j) { j["version"] = "2"; }, "version: expected an integer"},
+        Corruption{"version_real", [](json& j) { j["version"] = 2.0; }, "version: expected an integer"},
         Corruption{"array", [](json& j) { j = json::array(); }, "expected an object, got an array"},
         Corruption{"generator", [](json& j) { j["generator"] = 3; }, "generator: expected a string"},
         Corruption{"name", [](json& j) { j["name"] = nullptr; }, "name: expected a string"},
@@ -193,26 +240,39 @@ INSTANTIATE_TEST_SUITE_P(
         Corruption{"differences", [](json& j) { j["differences"] = 9; },
                    "differences: expected an integer from 1 to 8"},
         Corruption{"no_differences", [](json& j) { j["differences"] = 0; }, "differences: expected"},
-        Corruption{"fewer_differences", [](json& j) { j["differences"] = 3; }, "weights.scale: expected an array of 3"},
-        Corruption{"weights", [](json& j) { j["weights"] = 1; }, "weights: expected an object"},
-        Corruption{"weight_files", [](json& j) { j["weights"]["files"].push_back("w.png"); },
-                   "weights.files: expected an array of 1"},
-        Corruption{"columns", [](json& j) { j["weights"]["columns"] = 4294967297; },
-                   "weights.columns: expected an integer"},
-        Corruption{"negative", [](json& j) { j["weights"]["rows"] = -1; }, "weights.rows: expected an integer"},
-        Corruption{"too_few_tiles", [](json& j) { j["weights"]["rows"] = 1; }, "tiles for 5 expressions"},
-        Corruption{"wide_atlas", [](json& j) { j["weights"]["columns"] = 16000; }, "16384"},
-        Corruption{"high_atlas", [](json& j) { j["weights"]["rows"] = 16000; }, "16384"},
-        Corruption{"tile", [](json& j) { j["weights"]["tile_width"] = 6; },
-                   "maps[0]: expected 40 x 24 texels to need 6 x 3 cells"},
-        Corruption{"tile_huge", [](json& j) { j["weights"]["tile_width"] = 2147483647; }, "weights.tile_width"},
-        Corruption{"border", [](json& j) { j["weights"]["border"] = 0; }, "weights.border"},
+        Corruption{"fewer_differences", [](json& j) { j["differences"] = 3; },
+                   "weights[0].scale: expected an array of 3"},
+        Corruption{"weights", [](json& j) { j["weights"] = j["weights"][0]; },
+                   "weights: expected an array of 1 to 256, got an object"},
+        Corruption{"no_weights", [](json& j) { j["weights"] = json::array(); },
+                   "weights: expected an array of 1 to 256, got 0 elements"},
+        Corruption{"weight_set", [](json& j) { j["weights"][0] = 1; }, "weights[0]: expected an object"},
+        Corruption{"unused_weights", [](json& j) { j["weights"].push_back(j["weights"][0]); },
+                   "weights[1]: expected weights that a map uses (maps[].weights), got no map that does"},
+        Corruption{"map_weights", [](json& j) { j["maps"][1]["weights"] = 1; },
+                   "maps[1].weights: expected an integer from 0 to 0, got 1"},
+        Corruption{"map_weights_text", [](json& j) { j["maps"][1]["weights"] = "weights.png"; },
+                   "maps[1].weights: expected an integer"},
+        Corruption{"no_map_weights", [](json& j) { j["maps"][0].erase("weights"); },
+                   "maps[0].weights: got no such field"},
+        Corruption{"weight_files", [](json& j) { j["weights"][0]["files"].push_back("w.png"); },
+                   "weights[0].files: expected an array of 1"},
+        Corruption{"columns", [](json& j) { j["weights"][0]["columns"] = 4294967297; },
+                   "weights[0].columns: expected an integer"},
+        Corruption{"negative", [](json& j) { j["weights"][0]["rows"] = -1; }, "weights[0].rows: expected an integer"},
+        Corruption{"too_few_tiles", [](json& j) { j["weights"][0]["rows"] = 1; }, "tiles for 5 expressions"},
+        Corruption{"wide_atlas", [](json& j) { j["weights"][0]["columns"] = 16000; }, "16384"},
+        Corruption{"high_atlas", [](json& j) { j["weights"][0]["rows"] = 16000; }, "16384"},
+        Corruption{"tile", [](json& j) { j["weights"][0]["tile_width"] = 6; },
+                   "maps[0]: expected 40 x 24 texels to need 6 x 3 cells (tile_width, tile_height of weights[0])"},
+        Corruption{"tile_huge", [](json& j) { j["weights"][0]["tile_width"] = 2147483647; }, "weights[0].tile_width"},
+        Corruption{"border", [](json& j) { j["weights"][0]["border"] = 0; }, "weights[0].border"},
         Corruption{"weight_scale_nan",
-                   [](json& j) { j["weights"]["scale"][0] = std::numeric_limits<double>::quiet_NaN(); },
-                   "weights.scale[0]: expected a number"},
-        Corruption{"weight_offset", [](json& j) { j["weights"]["offset"][3] = 1e300; }, "weights.offset[3]"},
-        Corruption{"weights_outside", [](json& j) { j["weights"]["files"][0] = "../weights.png"; },
-                   "weights.files[0]: expected a path inside the package"},
+                   [](json& j) { j["weights"][0]["scale"][0] = std::numeric_limits<double>::quiet_NaN(); },
+                   "weights[0].scale[0]: expected a number"},
+        Corruption{"weight_offset", [](json& j) { j["weights"][0]["offset"][3] = 1e300; }, "weights[0].offset[3]"},
+        Corruption{"weights_outside", [](json& j) { j["weights"][0]["files"][0] = "../weights.png"; },
+                   "weights[0].files[0]: expected a path inside the package"},
         Corruption{"no_maps", [](json& j) { j["maps"] = json::array(); }, "maps: expected an array of 1"},
         Corruption{"same_maps", [](json& j) { j["maps"][1]["name"] = "albedo"; },
                    "maps[1].name: expected unique map names"},
@@ -264,14 +324,17 @@ TEST(PackageJson, HugeNumbersDeepNestingAndBadTextAreRefused) {
     ADD_FAILURE() << "expected an InputError";
     return "";
   };
-  EXPECT_THAT(message(R"({"format":"facezip-package","version":1e999})"), HasSubstr(file));
+  EXPECT_THAT(message(R"({"format":"facezip-package","version":2e999})"), HasSubstr(file));
   EXPECT_THAT(message(R"({"method":)" + std::string(100000, '[')), HasSubstr("nested"));
   EXPECT_THAT(message("{\"name\":\"\xff\"}"), HasSubstr("byte"));
   EXPECT_THAT(message("{\"version\":NaN}"), HasSubstr("byte"));
 }
 
 std::vector<std::string> imagesOf(const PackageDescription& description) {
-  std::vector<std::string> files = description.weights.files;
+  std::vector<std::string> files;
+  for (const PackageWeights& weights : description.weights) {
+    files.insert(files.end(), weights.files.begin(), weights.files.end());
+  }
   for (const PackageMap& map : description.maps) {
     files.push_back(map.neutral_file);
     for (const PackageDifference& difference : map.differences) files.push_back(difference.file);
@@ -284,7 +347,7 @@ class CorruptImage : public testing::Test {
   CorruptImage() {
     sample_ = makeSample({{"albedo", 40, 24, 3, SampleType::kUint8, 8},
                           {"detail", 80, 48, 1, SampleType::kUint16, 16},
-                          {"height", 40, 24, 3, SampleType::kFloat32, 8}},
+                          {"height", 40, 24, 3, SampleType::kFloat32, 4, 1}},
                          5, 5);
     test::writeSample(sample_, folder_.path());
   }
@@ -360,6 +423,10 @@ TEST(PackageWriter, RefusesWhatCouldNotBeOpened) {
   refused([](PackageDescription& d) { d.maps.clear(); });
   refused([](PackageDescription& d) { d.maps[0].width = 0; });
   refused([](PackageDescription& d) { d.maps[0].weight_scale = 0; });
+  refused([](PackageDescription& d) { d.maps[0].weight_set = 1; });
+  refused([](PackageDescription& d) { d.maps[0].weight_set = -1; });
+  refused([](PackageDescription& d) { d.weights.push_back(d.weights[0]); });
+  refused([](PackageDescription& d) { d.weights.clear(); });
   refused([](PackageDescription& d) { d.maps[0].differences.pop_back(); });
   refused([](PackageDescription& d) { d.maps[0].differences[0].scale[0] = std::numeric_limits<double>::quiet_NaN(); });
   refused([](PackageDescription& d) { d.maps[0].differences[0].offset[0] = -0.123; });
@@ -378,7 +445,7 @@ TEST(PackageWriter, DescriptionComesLastAndAnUnfinishedPackageLeavesNothing) {
     io::StagedDirectory staged(folder / "package", io::StagedDirectory::Existing::kReplaceMarked, "package.json");
     package::PackageWriter writer(sample.description, staged.path());
     writer.writeNeutralRows(0, sample.neutrals[0], 24);
-    writer.writeWeights(sample.weights);
+    writer.writeWeights(0, sample.weights[0]);
     EXPECT_FALSE(fs::exists(staged.path() / "package.json"));
   }
   EXPECT_TRUE(fs::is_empty(folder.path()));

@@ -57,13 +57,15 @@ void MapReader::load(TextureRows& textures) {
   }
 }
 
-std::shared_ptr<WeightMaps> loadWeightMaps(const Package& package, device::DeviceContext& context) {
-  const PackageWeights& weights = package.weights();
+namespace {
+
+std::shared_ptr<WeightMaps> loadWeightSet(const Package& package, int set, device::DeviceContext& context) {
+  const PackageWeights& weights = package.weightSets()[static_cast<std::size_t>(set)];
   const WeightGrid grid{weights.tile_width, weights.tile_height, static_cast<int>(package.expressions().size()),
                         weights.scale, weights.offset};
   std::vector<std::byte> codes(grid.codeBytes());
   package::readWeightAtlas(
-      package.description(), package.directory(),
+      package.description(), set, package.directory(),
       [&](int expression, int cell_row, int first_channel, int row_channels, std::span<const std::byte> row) {
         const std::size_t first_cell = static_cast<std::size_t>(cell_row) * static_cast<std::size_t>(grid.columns);
         const std::size_t channels = static_cast<std::size_t>(row_channels);
@@ -73,6 +75,16 @@ std::shared_ptr<WeightMaps> loadWeightMaps(const Package& package, device::Devic
         }
       });
   return std::make_shared<WeightMaps>(context, grid, codes);
+}
+
+}  // namespace
+
+std::vector<std::shared_ptr<WeightMaps>> loadWeightMaps(const Package& package, device::DeviceContext& context) {
+  std::vector<std::shared_ptr<WeightMaps>> sets;
+  for (int set = 0; set < static_cast<int>(package.weightSets().size()); ++set) {
+    sets.push_back(loadWeightSet(package, set, context));
+  }
+  return sets;
 }
 
 }  // namespace facezip::blend

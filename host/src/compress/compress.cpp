@@ -309,7 +309,7 @@ class Compression {
     const std::size_t cells = grid_.cells.cells();
     std::vector<std::uint8_t> codes(mapper.outputBytes(cells));
     mapper.fill(grid_.cells, 0, cells, codes);
-    writer.writeWeights(std::as_bytes(std::span(codes)));
+    writer.writeWeights(0, std::as_bytes(std::span(codes)));
     clock_.book("weight maps");
   }
 
@@ -319,8 +319,9 @@ class Compression {
     description.name = capture_.name;
     description.expressions = capture_.expressions;
     description.differences = options_.differences;
-    description.weights.scale.assign(static_cast<std::size_t>(options_.differences), 1.0 / 255.0);
-    description.weights.offset.assign(static_cast<std::size_t>(options_.differences), 0.0);
+    PackageWeights& weights = description.weights.emplace_back();  // the set that all maps share
+    weights.scale.assign(static_cast<std::size_t>(options_.differences), 1.0 / 255.0);
+    weights.offset.assign(static_cast<std::size_t>(options_.differences), 0.0);
     description.method_json = methodJson(options_, report_, face_.region_description);
     std::vector<std::vector<TextureEncoding>> encodings;
     for (OpenMap& map : maps_.maps) {

@@ -32,9 +32,9 @@ void printPackage(const Package& package) {
   fmt::print("{}: {} expressions, {} difference textures a map, made by {}\n", package.name(),
              package.expressions().size(), package.differences(), package.description().generator);
   for (const PackageMap& map : package.maps()) {
-    fmt::print("  map {}: {} x {}, {} channel{}, {}{}{}, {} texels to a weight texel\n", map.name, map.width,
-               map.height, map.channels, map.channels == 1 ? "" : "s", sampleName(map.sample_type),
-               map.colour_space.empty() ? "" : ", ", map.colour_space, map.weight_scale);
+    fmt::print("  map {}: {} x {}, {} channel{}, {}{}{}, differences in {} bits, {} texels to a weight texel\n",
+               map.name, map.width, map.height, map.channels, map.channels == 1 ? "" : "s", sampleName(map.sample_type),
+               map.colour_space.empty() ? "" : ", ", map.colour_space, map.difference_bits, map.weight_scale);
   }
   for (std::size_t set = 0; set < package.weightSets().size(); ++set) printWeights(package, set);
   fmt::print("  memory: {} at run time, {} on disk\n", formatMegabytes(package.bytesInMemory()),

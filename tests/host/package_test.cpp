@@ -3,11 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <random>
 
+#include "compress/texture_encoding.hpp"
 #include "image/image_file.hpp"
 #include "io/staged_directory.hpp"
 #include "package/package_json.hpp"
@@ -41,12 +44,12 @@ std::string messageOfOpening(const fs::path& directory) {
 
 std::vector<std::byte> readSamples(const fs::path& file) { return image::readImage(file).samples; }
 
-class PackageContents : public testing::TestWithParam<std::tuple<SampleType, int, int>> {};
+class PackageContents : public testing::TestWithParam<std::tuple<SampleType, int, int, int>> {};
 
 TEST_P(PackageContents, ComeBackAsTheyWereWritten) {
-  const auto& [type, channels, differences] = GetParam();
+  const auto& [type, channels, differences, bits] = GetParam();
   const test::TemporaryDirectory folder;
-  SamplePackage sample = makeSample({{"albedo", 41, 23, channels, type, 8}}, 5, differences);
+  SamplePackage sample = makeSample({{"albedo", 41, 23, channels, type, 8, 0, bits}}, 5, differences);
   test::writeSample(sample, folder / "package");
   const Package package = Package::open(folder / "package");
   EXPECT_EQ(package::packageJson(package.description()), package::packageJson(sample.description));
@@ -59,10 +62,10 @@ TEST_P(PackageContents, ComeBackAsTheyWereWritten) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(TypesChannelsDifferences, PackageContents,
-                         testing::Combine(testing::Values(SampleType::kUint8, SampleType::kUint16,
-                                                          SampleType::kFloat32),
-                                          testing::Values(1, 2, 3, 4), testing::Values(1, 3, 4, 5, 8)));
+INSTANTIATE_TEST_SUITE_P(
+    TypesChannelsDifferences, PackageContents,
+    testing::Combine(testing::Values(SampleType::kUint8, SampleType::kUint16, SampleType::kFloat32),
+                     testing::Values(1, 2, 3, 4), testing::Values(1, 3, 4, 5, 8), testing::Values(8, 16)));
 
 /// [N][tile_height][tile_width][C], as PackageWriter::writeWeights takes it.
 std::vector<std::byte> readWeights(const PackageDescription& description, int set, const fs::path& directory) {
@@ -170,6 +173,10 @@ TEST(Package, CountsBytesAsTheRendererKeepsThem) {
       makeSample({{"albedo", 40, 24, 3, SampleType::kUint8, 8, 0}, {"height", 20, 12, 1, SampleType::kFloat32, 2, 1}});
   test::writeSample(own, folder / "own");
   EXPECT_EQ(Package::open(folder / "own").bytesInMemory(), shared + 10u * 6 * 5 * 4);
+  SamplePackage fine =
+      makeSample({{"albedo", 40, 24, 3, SampleType::kUint8, 8, 0, 16}, {"height", 20, 12, 1, SampleType::kFloat32, 4}});
+  test::writeSample(fine, folder / "fine");
+  EXPECT_EQ(Package::open(folder / "fine").bytesInMemory(), shared + 40u * 24 * 3 * 4);
 }
 
 TEST(Package, MissingDirectoryAndDescriptionAreNamed) {
@@ -191,6 +198,37 @@ TEST(PackageJson, TruncatedAtEveryLengthIsRefused) {
   EXPECT_NO_THROW(package::parsePackageJson(text, "package.json"));
 }
 
+/// What compress writes is accepted as it comes back from JSON, though the check of zero has no tolerance.
+TEST(PackageJson, EveryEncodingKeepsItsZeroThroughText) {
+  std::mt19937 random(9);
+  std::normal_distribution<float> end(0.0f, 60.0f);
+  for (const int bits : {8, 16}) {
+    PackageDescription description;
+    {
+      const test::TemporaryDirectory folder;
+      SamplePackage sample = makeSample({{"albedo", 8, 8, 4, SampleType::kUint8, 8, 0, bits}}, 1, 8);
+      test::writeSample(sample, folder.path());
+      description = sample.description;
+    }
+    for (int round = 0; round < 200; ++round) {
+      for (PackageDifference& difference : description.maps[0].differences) {
+        for (std::size_t c = 0; c < 4; ++c) {
+          const float a = end(random), b = end(random);
+          const compress::TextureEncoding encoding = compress::encodingFor({std::min(a, b), std::max(a, b)}, bits);
+          difference.scale[c] = static_cast<double>(encoding.scale);
+          difference.offset[c] = static_cast<double>(encoding.offset);
+        }
+      }
+      const PackageDescription read =
+          package::parsePackageJson(package::packageJson(description), "package.json");  // throws where zero is lost
+      for (std::size_t i = 0; i < 8; ++i) {
+        EXPECT_EQ(read.maps[0].differences[i].scale, description.maps[0].differences[i].scale);
+        EXPECT_EQ(read.maps[0].differences[i].offset, description.maps[0].differences[i].offset);
+      }
+    }
+  }
+}
+
 struct Corruption {
   const char* name;
   std::function<void(json&)> apply;
@@ -202,7 +240,7 @@ class CorruptJson : public testing::TestWithParam<Corruption> {};
 TEST_P(CorruptJson, IsRefusedByFileAndField) {
   const test::TemporaryDirectory folder;
   SamplePackage sample =
-      makeSample({{"albedo", 40, 24, 3, SampleType::kUint8, 8}, {"normal", 40, 24, 3, SampleType::kUint8, 8}});
+      makeSample({{"albedo", 40, 24, 3, SampleType::kUint8, 8}, {"normal", 40, 24, 3, SampleType::kUint8, 8, 0, 16}});
   test::writeSample(sample, folder.path());
   json document = json::parse(readText(folder / "package.json"));
   GetParam().apply(document);
@@ -307,7 +345,30 @@ INSTANTIATE_TEST_SUITE_P(
         Corruption{"difference_scale", [](json& j) { j["maps"][0]["differences"][2]["scale"].push_back(1); },
                    "maps[0].differences[2].scale: expected an array of 3"},
         Corruption{"no_zero", [](json& j) { j["maps"][0]["differences"][2]["offset"][1] = -7.03; },
+                   "maps[0].differences[2].offset: expected -scale times an integer from 0 to 255, so that zero has a "
+                   "code, got offset -7.03 at scale "},
+        Corruption{"nearly_zero",
+                   [](json& j) {
+                     json& offset = j["maps"][0]["differences"][2]["offset"][1];
+                     offset = std::nextafter(offset.get<double>(), 0.0);
+                   },
                    "maps[0].differences[2].offset: expected -scale times an integer"},
+        Corruption{"zero_beyond_8_bits", [](json& j) { j["maps"][1]["difference_bits"] = 8; },
+                   "maps[1].differences[0].offset: expected -scale times an integer from 0 to 255"},
+        Corruption{"zero_beyond_16_bits",
+                   [](json& j) {
+                     j["maps"][1]["differences"][0]["scale"][0] = 0.5;
+                     j["maps"][1]["differences"][0]["offset"][0] = -32768.0;
+                   },
+                   "maps[1].differences[0].offset: expected -scale times an integer from 0 to 65535"},
+        Corruption{"bits", [](json& j) { j["maps"][0]["difference_bits"] = 12; },
+                   "maps[0].difference_bits: expected 8 or 16, got 12"},
+        Corruption{"bits_text", [](json& j) { j["maps"][0]["difference_bits"] = "8"; },
+                   "maps[0].difference_bits: expected 8 or 16, got \"8\""},
+        Corruption{"bits_real", [](json& j) { j["maps"][0]["difference_bits"] = 8.0; },
+                   "maps[0].difference_bits: expected 8 or 16, got 8.0"},
+        Corruption{"no_bits", [](json& j) { j["maps"][0].erase("difference_bits"); },
+                   "maps[0].difference_bits: got no such field"},
         Corruption{"no_scale", [](json& j) { j["maps"][0]["differences"][2]["scale"][1] = 0; },
                    "maps[0].differences[2].offset"},
         Corruption{"method", [](json& j) { j["method"] = json::array(); }, "method: expected an object"}),
@@ -346,7 +407,7 @@ class CorruptImage : public testing::Test {
  protected:
   CorruptImage() {
     sample_ = makeSample({{"albedo", 40, 24, 3, SampleType::kUint8, 8},
-                          {"detail", 80, 48, 1, SampleType::kUint16, 16},
+                          {"detail", 80, 48, 1, SampleType::kUint16, 16, 0, 16},
                           {"height", 40, 24, 3, SampleType::kFloat32, 4, 1}},
                          5, 5);
     test::writeSample(sample_, folder_.path());
@@ -380,6 +441,16 @@ TEST_F(CorruptImage, TruncatedIsNamed) {
   for (const std::uintmax_t cut : {1u, 4u, 11u, 12u, 13u}) {
     forEachImage([cut](const fs::path& file) { fs::resize_file(file, fs::file_size(file) - cut); });
   }
+}
+
+/// Codes of 8 bits cannot stand for those of 16: the image is checked against difference_bits.
+TEST_F(CorruptImage, OfOtherBitsThanPackageJsonSaysIsNamed) {
+  json document = json::parse(readText(folder_ / "package.json"));
+  document["maps"][0]["difference_bits"] = 16;
+  io::writeTextFile(folder_ / "package.json", document.dump());
+  EXPECT_THAT(messageOfOpening(folder_.path()),
+              testing::AllOf(HasSubstr("albedo/difference_0.png: expected 40 x 24 texels, 3 channels, 16-bit"),
+                             HasSubstr("got 40 x 24 texels, 3 channels, 8-bit")));
 }
 
 TEST_F(CorruptImage, OfAnotherSizeChannelCountOrTypeIsNamed) {
@@ -430,6 +501,7 @@ TEST(PackageWriter, RefusesWhatCouldNotBeOpened) {
   refused([](PackageDescription& d) { d.maps[0].differences.pop_back(); });
   refused([](PackageDescription& d) { d.maps[0].differences[0].scale[0] = std::numeric_limits<double>::quiet_NaN(); });
   refused([](PackageDescription& d) { d.maps[0].differences[0].offset[0] = -0.123; });
+  refused([](PackageDescription& d) { d.maps[0].difference_bits = 12; });
   refused([](PackageDescription& d) { d.method_json = "{"; });
   refused([](PackageDescription& d) {
     d.maps[0].width = d.maps[0].height = 65536;

@@ -32,6 +32,7 @@ struct SampleMap {
   SampleType type = SampleType::kUint8;
   int weight_scale = 8;
   int weight_set = 0;
+  int difference_bits = 8;
 };
 
 inline std::vector<std::byte> randomBytes(std::size_t count, std::mt19937_64& random) {
@@ -86,17 +87,20 @@ inline SamplePackage makeSample(const std::vector<SampleMap>& maps = {{}}, int e
     map.sample_type = shape.type;
     map.weight_scale = shape.weight_scale;
     map.weight_set = shape.weight_set;
+    map.difference_bits = shape.difference_bits;
+    const int codes_per_step = shape.difference_bits == 16 ? 256 : 1;  // so that both span the same differences
     sample.differences.emplace_back();
     for (int i = 0; i < differences; ++i) {
       PackageDifference difference;
       for (int c = 0; c < shape.channels; ++c) {
-        difference.scale.push_back(0.4 + 0.1 * i + 0.03 * c);
-        difference.offset.push_back(-difference.scale.back() * (128 - 9 * i + c));
+        difference.scale.push_back((0.4 + 0.1 * i + 0.03 * c) / codes_per_step);
+        difference.offset.push_back(-difference.scale.back() * (codes_per_step * (128 - 9 * i + c)));
       }
       map.differences.push_back(difference);
       const auto samples =
           static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.height * shape.channels);
-      sample.differences.back().push_back(randomBytes(samples, random));
+      sample.differences.back().push_back(
+          randomBytes(samples * static_cast<std::size_t>(shape.difference_bits / 8), random));
     }
     sample.neutrals.push_back(randomNeutral(map, random));
     sample.description.maps.push_back(map);

@@ -11,11 +11,11 @@
 
 namespace facezip {
 
-/// One difference texture D_i of one map: an 8-bit image whose codes decode to D_i = scale * code + offset.
+/// One difference texture D_i of one map: an image of 8- or 16-bit codes that decode to D_i = scale * code + offset.
 struct PackageDifference {
   std::string file;            ///< relative to the package
   std::vector<double> scale;   ///< one per channel, >= 0, in units of 1/255 of full scale for each code
-  std::vector<double> offset;  ///< one per channel, -scale times a whole code in [0, 255]: zero is exact
+  std::vector<double> offset;  ///< one per channel, -scale times a whole code, in double: zero is exact
 };
 
 /// One map (albedo, normal, ...): its neutral texture I_0 and its difference textures.
@@ -30,6 +30,7 @@ struct PackageMap {
   int weight_set = 0;                           ///< which of Package::weightSets() this map is blended with
   double metric_weight = 1.0;                   ///< how much the map counted in the compression
   std::string neutral_file;                     ///< relative to the package
+  int difference_bits = 8;                      ///< of a code of the difference textures: 8 or 16
   std::vector<PackageDifference> differences;   ///< C, in the order of the weight channels
 
   /// Bytes of a whole neutral texture, or of a blended frame: height x width x channels samples, no padding.
@@ -86,7 +87,8 @@ class Package {
   const std::string& methodJson() const noexcept { return description_.method_json; }
 
   /// Bytes of the decoded texels that a renderer keeps (FaceZip, Table 1): per map 1 + C textures (the neutral in its
-  /// own type, differences in 8 bit), and of each set N weight maps of C bytes a cell without their borders.
+  /// own type, differences in their 8 or 16 bits), and of each set N weight maps of C bytes a cell without their
+  /// borders.
   std::uint64_t bytesInMemory() const;
   /// Bytes of all files of the package.
   std::uint64_t bytesOnDisk() const noexcept { return bytes_on_disk_; }

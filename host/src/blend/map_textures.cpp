@@ -21,6 +21,7 @@ TextureShape textureShape(const PackageMap& map, int differences) {
   shape.width = map.width;
   shape.channels = map.channels;
   shape.differences = differences;
+  shape.difference_bits = map.difference_bits;
   shape.sample_type = map.sample_type;
   shape.weight_scale = map.weight_scale;
   const double step = 1.0 / static_cast<double>(image::unit255(shape.sample_type));

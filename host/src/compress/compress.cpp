@@ -266,6 +266,7 @@ class Compression {
     described.colour_space = map.source->colour_space;
     described.weight_scale = map.weight_scale;
     described.metric_weight = map.source->metric_weight;
+    described.difference_bits = kCodeBits;
     for (int i = 0; i < options_.differences; ++i) {
       PackageDifference difference;
       for (int c = 0; c < shape.channels; ++c) {

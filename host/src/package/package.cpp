@@ -63,7 +63,8 @@ std::uint64_t Package::bytesInMemory() const {
   std::uint64_t bytes = 0;
   for (const PackageMap& map : maps()) {
     const std::uint64_t samples = map.frameBytes() / image::sampleBytes(map.sample_type);
-    bytes += map.frameBytes() + samples * static_cast<std::uint64_t>(differences());
+    const auto code_bytes = static_cast<std::uint64_t>(map.difference_bits / 8);
+    bytes += map.frameBytes() + samples * code_bytes * static_cast<std::uint64_t>(differences());
   }
   for (const PackageWeights& weights : weightSets()) {
     const std::uint64_t cells =

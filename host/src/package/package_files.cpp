@@ -53,7 +53,8 @@ std::uint64_t checkImage(const fs::path& file, const image::ImageShape& shape) {
 image::ImageShape neutralShape(const PackageMap& map) { return {map.width, map.height, map.channels, map.sample_type}; }
 
 image::ImageShape differenceShape(const PackageMap& map) {
-  return {map.width, map.height, map.channels, image::SampleType::kUint8};
+  return {map.width, map.height, map.channels,
+          map.difference_bits == 16 ? image::SampleType::kUint16 : image::SampleType::kUint8};
 }
 
 image::ImageReader openImage(const fs::path& file, const image::ImageShape& shape) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <set>
@@ -53,6 +54,7 @@ Document mapJson(const PackageMap& map) {
           {"weight_scale", map.weight_scale},
           {"metric_weight", map.metric_weight},
           {"neutral", {{"file", map.neutral_file}}},
+          {"difference_bits", map.difference_bits},
           {"differences", differences}};
 }
 
@@ -134,23 +136,24 @@ PackageWeights parseWeights(const JsonField& field, int expressions, int differe
   return weights;
 }
 
-/// Zero must be a code: outside the face a difference is zero, and there the neutral must come back untouched.
-void requireExactZero(const JsonField& field, double scale, double offset) {
+/// Zero must be a code: outside the face a difference is zero, and there the neutral must come back untouched. Numbers
+/// of 17 digits come back from JSON as they were written, so no tolerance is needed.
+void requireExactZero(const JsonField& field, double scale, double offset, int largest_code) {
   if (scale == 0.0 && offset == 0.0) return;
   const double zero_code = std::round(-offset / scale);
-  if (scale > 0.0 && zero_code >= 0.0 && zero_code <= 255.0 && std::abs(offset + scale * zero_code) <= 1e-5 * scale)
-    return;
-  field.fail("-scale times an integer from 0 to 255, so that zero has a code",
+  if (scale > 0.0 && zero_code >= 0.0 && zero_code <= largest_code && offset == -(scale * zero_code)) return;
+  field.fail(fmt::format("-scale times an integer from 0 to {}, so that zero has a code", largest_code),
              fmt::format("offset {} at scale {}", offset, scale));
 }
 
-PackageDifference parseDifference(const JsonField& field, int channels) {
+PackageDifference parseDifference(const JsonField& field, int channels, int bits) {
+  const int largest_code = (1 << bits) - 1;
   PackageDifference difference;
   difference.file = fileInPackage(field["file"], ".png");
   difference.scale = parseNumbers(field["scale"], channels, 0, kLargestCoefficient);
-  difference.offset = parseNumbers(field["offset"], channels, -255 * kLargestCoefficient, 0);
+  difference.offset = parseNumbers(field["offset"], channels, -largest_code * kLargestCoefficient, 0);
   for (std::size_t c = 0; c < difference.scale.size(); ++c) {
-    requireExactZero(field["offset"], difference.scale[c], difference.offset[c]);
+    requireExactZero(field["offset"], difference.scale[c], difference.offset[c], largest_code);
   }
   return difference;
 }
@@ -191,9 +194,10 @@ PackageMap parseMap(const JsonField& field, const std::vector<PackageWeights>& w
   map.weight_scale = field["weight_scale"].integer(1, kMaxSide);
   map.metric_weight = field["metric_weight"].number(0, kLargestCoefficient);
   map.neutral_file = fileInPackage(field["neutral"]["file"], map.sample_type == SampleType::kFloat32 ? ".exr" : ".png");
+  map.difference_bits = field["difference_bits"].oneOf(std::array{8, 16});
   const std::size_t count = static_cast<std::size_t>(differences);
   for (const JsonField& difference : field["differences"].elements(count, count)) {
-    map.differences.push_back(parseDifference(difference, map.channels));
+    map.differences.push_back(parseDifference(difference, map.channels, map.difference_bits));
   }
   requireSameGrid(field, map, weight_sets[static_cast<std::size_t>(map.weight_set)]);
   return map;

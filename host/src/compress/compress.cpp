@@ -279,25 +279,25 @@ class Compression {
     return described;
   }
 
-  // Pass 3: difference textures (Eq. 5) as bytes, beside the neutral as it is.
+  // Pass 3: difference textures (Eq. 5) as codes, beside the neutral as it is.
   void writeMap(package::PackageWriter& writer, int index, DifferenceTextures& textures,
                 const std::vector<TextureEncoding>& encoding) {
     OpenMap& map = maps_.maps[static_cast<std::size_t>(index)];
-    std::vector<std::uint8_t> codes;
+    std::vector<std::byte> codes;
     forEachBand(map, "writing", [&](const MapBand& band) {
       const int rows = band.end - band.begin;
-      const std::size_t bytes =
-          static_cast<std::size_t>(rows) * static_cast<std::size_t>(band.shape.width * band.shape.channels);
+      const std::size_t bytes = static_cast<std::size_t>(rows) *
+                                static_cast<std::size_t>(band.shape.width * band.shape.channels) * (kCodeBits / 8);
       codes.resize(bytes * static_cast<std::size_t>(options_.differences));
       textures.compute(band.tiles, band.differences, band.shape);
-      textures.encode(band.tiles, band.shape, encoding, codes);
+      textures.encode(band.tiles, band.shape, encoding, kCodeBits, codes);
       const std::size_t neutral_bytes = static_cast<std::size_t>(rows) * map.samples->shape().rowBytes();
       tbb::parallel_for(-1, options_.differences, [&](int i) {
         if (i < 0) {
           writer.writeNeutralRows(index, band.samples.first(neutral_bytes), rows);
         } else {
-          writer.writeDifferenceRows(
-              index, i, std::as_bytes(std::span(codes)).subspan(static_cast<std::size_t>(i) * bytes, bytes), rows);
+          writer.writeDifferenceRows(index, i, std::span(codes).subspan(static_cast<std::size_t>(i) * bytes, bytes),
+                                     rows);
         }
       });
     });

@@ -36,10 +36,11 @@ std::vector<float> everyWeight(int expressions) {
 
 /// Textures of a whole square map, and the blended weights they are sampled with.
 struct Scene {
-  Scene(int side, int channels, image::SampleType type)
+  Scene(int side, int channels, image::SampleType type, int difference_bits)
       : shape{side,
               channels,
               4,
+              difference_bits,
               type,
               8,
               std::vector<float>(static_cast<std::size_t>(4 * channels), 1.0f),
@@ -67,8 +68,8 @@ struct Scene {
   blend::TextureRows textures;
 };
 
-void blendKernel(benchmark::State& state, int channels, image::SampleType type) {
-  Scene scene(static_cast<int>(state.range(0)), channels, type);
+void blendKernel(benchmark::State& state, int channels, image::SampleType type, int difference_bits = 8) {
+  Scene scene(static_cast<int>(state.range(0)), channels, type, difference_bits);
   const cl::Buffer frame = benchDevice().allocate(scene.textures.frameBytes(), CL_MEM_WRITE_ONLY, "frame");
   measure(state, [&] {
     scene.textures.enqueue(scene.weights.weights(), frame);
@@ -79,7 +80,7 @@ void blendKernel(benchmark::State& state, int channels, image::SampleType type) 
 
 /// A frame as a caller gets it: new weights of 52 expressions, the kernel, rows in the caller's memory.
 void wholeFrame(benchmark::State& state, int channels, image::SampleType type) {
-  Scene scene(static_cast<int>(state.range(0)), channels, type);
+  Scene scene(static_cast<int>(state.range(0)), channels, type, /* difference_bits= */ 8);
   const std::vector<float> beta = everyWeight(52);
   std::vector<std::byte> out(static_cast<std::size_t>(scene.shape.width) * scene.shape.rowBytes());
   measure(state, [&] {
@@ -120,6 +121,10 @@ BENCHMARK_CAPTURE(blendKernel, rgb16, 3, image::SampleType::kUint16)
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(blendKernel, rgb_float, 3, image::SampleType::kFloat32)
+    ->Arg(2048)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(blendKernel, rgb8_differences16, 3, image::SampleType::kUint8, 16)
     ->Arg(2048)
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond);

@@ -76,9 +76,9 @@ void differenceTextureEncode(benchmark::State& state) {
   bench.textures.compute(bench.tiles, bench.differences, bench.shape);
   const std::vector<compress::TextureEncoding> encoding(static_cast<std::size_t>(kTextures * bench.shape.channels),
                                                         {1.0f, -128.0f});
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(bench.texels()) * encoding.size());
-  measure(state, [&] { bench.textures.encode(bench.tiles, bench.shape, encoding, bytes); });
-  setBandwidthCounters(state, bench.textureBytes() + static_cast<double>(bytes.size()));
+  std::vector<std::byte> codes(static_cast<std::size_t>(bench.texels()) * encoding.size());
+  measure(state, [&] { bench.textures.encode(bench.tiles, bench.shape, encoding, /* bits= */ 8, codes); });
+  setBandwidthCounters(state, bench.textureBytes() + static_cast<double>(codes.size()));
 }
 
 void arguments(benchmark::internal::Benchmark* row) {

@@ -19,9 +19,10 @@ inline constexpr double kGramRelative = 2e-6;
 // weights and coefficients are 0..1 and sum to at most 1 each, so errors do not grow with K and N.
 inline constexpr double kDifferenceTextureRelative = 2e-6;
 
-// Encoded bytes: exact, but for values this close to half way between two bytes, where the rounding of
-// (value - offset) / scale in float32 (255 * 6e-8, and as much again from the reference's own scale) decides.
-inline constexpr double kEncodeTie = 1e-3;
+// Codes of difference textures, as a share of the largest code: exact, but for values this close to half way between
+// two codes, where the rounding of (value - offset) / scale in float32 decides: of the difference, the reciprocal, the
+// product and the sum with 1/2, each half a unit of 2^-23.
+inline constexpr double kEncodeTie = 2.5e-7;
 
 // Difference textures of given weights, relative to full scale times the condition of the texel's system: a Cholesky
 // factorisation of up to 8 x 8 in float32 is off by a few units of 2^-24 times the condition.

@@ -2,6 +2,8 @@
 #include <fmt/ranges.h>
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "commands.hpp"
 #include "facezip/package.hpp"
@@ -14,17 +16,27 @@ const char* sampleName(SampleType type) {
   return type == SampleType::kUint8 ? "8-bit" : type == SampleType::kUint16 ? "16-bit" : "float";
 }
 
+/// The set that all maps share needs no name; others are known by the maps that use them.
+void printWeights(const Package& package, std::size_t set) {
+  const PackageWeights& weights = package.weightSets()[set];
+  std::vector<std::string> users;
+  for (const PackageMap& map : package.maps()) {
+    if (static_cast<std::size_t>(map.weight_set) == set) users.push_back(map.name);
+  }
+  const std::string of = package.weightSets().size() == 1 ? "" : fmt::format(" of {}", fmt::join(users, ", "));
+  fmt::print("  weights{}: {} x {} for each expression, {} x {} tiles in {}\n", of, weights.tile_width,
+             weights.tile_height, weights.columns, weights.rows, fmt::join(weights.files, ", "));
+}
+
 void printPackage(const Package& package) {
-  const PackageWeights& weights = package.weights();
   fmt::print("{}: {} expressions, {} difference textures a map, made by {}\n", package.name(),
              package.expressions().size(), package.differences(), package.description().generator);
   for (const PackageMap& map : package.maps()) {
-    fmt::print("  map {}: {} x {}, {} channel{}, {}{}{}, {} texels to a weight texel\n", map.name, map.width,
-               map.height, map.channels, map.channels == 1 ? "" : "s", sampleName(map.sample_type),
-               map.colour_space.empty() ? "" : ", ", map.colour_space, map.weight_scale);
+    fmt::print("  map {}: {} x {}, {} channel{}, {}{}{}, differences in {} bits, {} texels to a weight texel\n",
+               map.name, map.width, map.height, map.channels, map.channels == 1 ? "" : "s", sampleName(map.sample_type),
+               map.colour_space.empty() ? "" : ", ", map.colour_space, map.difference_bits, map.weight_scale);
   }
-  fmt::print("  weights: {} x {} for each expression, {} x {} tiles in {}\n", weights.tile_width, weights.tile_height,
-             weights.columns, weights.rows, fmt::join(weights.files, ", "));
+  for (std::size_t set = 0; set < package.weightSets().size(); ++set) printWeights(package, set);
   fmt::print("  memory: {} at run time, {} on disk\n", formatMegabytes(package.bytesInMemory()),
              formatMegabytes(package.bytesOnDisk()));
   fmt::print("  expressions: {}\n", fmt::join(package.expressions(), ", "));

@@ -13,13 +13,13 @@
 // PoCL unrolls no loop by itself: without the pragmas h, w and value live in memory, and a third of the speed is lost.
 //
 // NDRange   global {tiles * 16 / LANES}, rounded up to the local size; a work-item has LANES columns of one tile
-// Buffers   textures  in   [tile][row 8][TILE_ROW_BYTES]: neutral [channel][16] SAMPLE, then codes [C][channel][16] uchar,
-//                          then padding that keeps the neutral aligned; tiles row-major
+// Buffers   textures  in   [tile][row 8][TILE_ROW_BYTES]: neutral [channel][16] SAMPLE, then from TILE_CODES_OFFSET on
+//                          codes [C][channel][16] CODE, then padding; both aligned for vector loads; tiles row-major
 //           weights   in   [cell / 16][C][16]         float  weight_blend.cl's output
 //           encoding  in   [2][C][channels]           float  scale_ic in steps of a sample, then zero_ic
 //           frame     out  [8 * tile rows][16 * tiles_x][channels] SAMPLE  interleaved
 // Defines   CHANNELS 1..4, DIFFERENCES 1..8, SCALE s >= 1, LANES 16 (CPU) or 1 (GPU),
-//           SAMPLE_TYPE 0 uchar, 1 ushort, 2 float; TILE_ROW_BYTES
+//           SAMPLE_TYPE 0 uchar, 1 ushort, 2 float; CODE_BITS 8 or 16; TILE_CODES_OFFSET, TILE_ROW_BYTES
 // Rounding  integers: half up, clamped to the type; floats: neither, and I_0 is copied where the sum is 0
 
 #ifndef LANES
@@ -37,7 +37,11 @@
 #ifndef SAMPLE_TYPE
 #define SAMPLE_TYPE 0
 #endif
+#ifndef CODE_BITS
+#define CODE_BITS 8
+#endif
 #ifndef TILE_ROW_BYTES
+#define TILE_CODES_OFFSET (16 * CHANNELS)
 #define TILE_ROW_BYTES (16 * CHANNELS * (1 + DIFFERENCES))
 #endif
 
@@ -55,7 +59,12 @@
 #define VECTOR(type) JOIN(type, 16)
 #endif
 typedef VECTOR(float) floats;
-typedef VECTOR(uchar) codes;
+#if CODE_BITS == 16
+#define CODE ushort
+#else
+#define CODE uchar
+#endif
+typedef VECTOR(CODE) codes;
 #define TO_FLOATS JOIN(convert_, VECTOR(float))
 
 #if SAMPLE_TYPE == 0
@@ -200,7 +209,7 @@ kernel void blend(global const uchar* restrict textures, global const float* res
 #pragma unroll
     for (int i = 0; i < DIFFERENCES; ++i) w[i] = fma(h[above + 1][i] - h[above][i], fraction, h[above][i]);
 
-    global const uchar* difference = texels + CHANNELS * 16 * sizeof(SAMPLE) + lane;
+    global const CODE* difference = (global const CODE*)(texels + TILE_CODES_OFFSET) + lane;
     results value[CHANNELS];
 #pragma unroll
     for (int c = 0; c < CHANNELS; ++c) {

@@ -42,6 +42,15 @@ double sampleAt(const std::vector<std::byte>& image, SampleType type, std::size_
 
 double fullScale(SampleType type) { return type == SampleType::kUint8 ? 255 : type == SampleType::kUint16 ? 65535 : 1; }
 
+/// Codes of a difference texture as numbers.
+std::vector<double> differenceCodes(const std::vector<std::byte>& bytes, int bits) {
+  const SampleType type = bits == 16 ? SampleType::kUint16 : SampleType::kUint8;
+  std::vector<double> codes;
+  for (std::size_t s = 0; s < bytes.size() / static_cast<std::size_t>(bits / 8); ++s)
+    codes.push_back(sampleAt(bytes, type, s));
+  return codes;
+}
+
 std::vector<unsigned char> toCodes(const std::vector<std::byte>& bytes) {
   const auto* begin = reinterpret_cast<const unsigned char*>(bytes.data());
   return {begin, begin + bytes.size()};
@@ -57,15 +66,16 @@ std::vector<double> expectedFrame(const SamplePackage& sample, std::size_t m, co
   for (std::size_t s = 0; s < samples; ++s)
     textures.neutral.push_back(sampleAt(sample.neutrals[m], map.sample_type, s));
   for (std::size_t i = 0; i < map.differences.size(); ++i) {
-    textures.codes.push_back(toCodes(sample.differences[m][i]));
+    textures.codes.push_back(differenceCodes(sample.differences[m][i], map.difference_bits));
     textures.scale.push_back(map.differences[i].scale);
     textures.offset.push_back(map.differences[i].offset);
   }
+  const std::size_t set = static_cast<std::size_t>(map.weight_set);
+  const PackageWeights& w = d.weights[set];
   const reference::WeightMaps weights{
-      d.weights.tile_width,    d.weights.tile_height, d.differences,   static_cast<int>(d.expressions.size()),
-      toCodes(sample.weights), d.weights.scale,       d.weights.offset};
-  return reference::blendFrame(textures, reference::blendWeights(weights, beta), d.weights.tile_width,
-                               d.weights.tile_height);
+      w.tile_width, w.tile_height, d.differences, static_cast<int>(d.expressions.size()), toCodes(sample.weights[set]),
+      w.scale,      w.offset};
+  return reference::blendFrame(textures, reference::blendWeights(weights, beta), w.tile_width, w.tile_height);
 }
 
 std::vector<float> someWeights(std::size_t expressions) {
@@ -85,11 +95,12 @@ std::vector<std::byte> blendFrame(Blender& blender, const Package& package, int 
 struct FrameCase {
   SampleMap map;
   int expressions;
+  int differences = 4;
 };
 
 class BlenderFrames : public testing::TestWithParam<FrameCase> {
  protected:
-  BlenderFrames() : sample_(test::makeSample({GetParam().map}, GetParam().expressions)) {
+  BlenderFrames() : sample_(test::makeSample({GetParam().map}, GetParam().expressions, GetParam().differences)) {
     test::writeSample(sample_, folder_ / "package");
     package_ = std::make_unique<Package>(Package::open(folder_ / "package"));
   }
@@ -161,7 +172,15 @@ INSTANTIATE_TEST_SUITE_P(Sizes, BlenderFrames,
                                          FrameCase{{"m", 93, 61, 1, SampleType::kFloat32, 16}, 5},
                                          FrameCase{{"m", 64, 64, 3, SampleType::kUint8, 8}, 20},
                                          FrameCase{{"m", 1, 1, 3, SampleType::kUint8, 8}, 1},
-                                         FrameCase{{"m", 7, 300, 4, SampleType::kFloat32, 1}, 2}));
+                                         FrameCase{{"m", 7, 300, 4, SampleType::kFloat32, 1}, 2},
+                                         FrameCase{{"m", 41, 23, 3, SampleType::kUint8, 8}, 5, 1},
+                                         FrameCase{{"m", 41, 23, 3, SampleType::kUint8, 8}, 5, 3},
+                                         FrameCase{{"m", 41, 23, 3, SampleType::kUint8, 8}, 5, 5},
+                                         FrameCase{{"m", 41, 23, 3, SampleType::kUint8, 8}, 5, 8},
+                                         FrameCase{{"m", 41, 23, 3, SampleType::kUint8, 8, 0, 16}, 5, 4},
+                                         FrameCase{{"m", 41, 23, 1, SampleType::kUint8, 4, 0, 16}, 5, 1},
+                                         FrameCase{{"m", 41, 23, 2, SampleType::kUint16, 4, 0, 16}, 3, 8},
+                                         FrameCase{{"m", 41, 23, 4, SampleType::kFloat32, 8, 0, 16}, 2, 5}));
 
 TEST(Blender, IsLinearBeforeRounding) {
   const test::TemporaryDirectory folder;
@@ -179,10 +198,11 @@ TEST(Blender, IsLinearBeforeRounding) {
   }
 }
 
-TEST(Blender, BlendsEveryMapOfTheGridAndManyFrames) {
+TEST(Blender, BlendsEveryMapWithItsWeightsAndManyFrames) {
   const test::TemporaryDirectory folder;
-  SamplePackage sample =
-      test::makeSample({{"albedo", 40, 24, 3, SampleType::kUint8, 8}, {"normal", 80, 48, 3, SampleType::kUint16, 16}});
+  SamplePackage sample = test::makeSample({{"albedo", 40, 24, 3, SampleType::kUint8, 8, 0},
+                                           {"height", 37, 21, 1, SampleType::kUint8, 4, 1, 16},
+                                           {"normal", 80, 48, 3, SampleType::kUint16, 16, 0}});
   test::writeSample(sample, folder.path());
   const Package package = Package::open(folder.path());
   Blender first(package, testDevice());
@@ -190,7 +210,7 @@ TEST(Blender, BlendsEveryMapOfTheGridAndManyFrames) {
   for (int frame = 0; frame < 5; ++frame) {
     std::vector<float> beta(5, 0.0f);
     beta[static_cast<std::size_t>(frame)] = 0.7f;
-    for (const int m : {0, 1}) {
+    for (const int m : {0, 1, 2}) {
       const std::vector<std::byte> got = blendFrame(blender, package, m, beta);
       const std::vector<double> expected = expectedFrame(sample, static_cast<std::size_t>(m), beta);
       const SampleType type = package.maps()[static_cast<std::size_t>(m)].sample_type;
@@ -250,12 +270,13 @@ TEST(PackageFormat, WorkedExampleGivesItsTestVectors) {
   const test::TemporaryDirectory folder;
   io::createDirectories(folder / "albedo");
   io::writeTextFile(folder / "package.json", R"({
-    "format": "facezip-package", "version": 1, "generator": "by hand", "name": "example",
+    "format": "facezip-package", "version": 2, "generator": "by hand", "name": "example",
     "expressions": ["smile", "jawOpen"], "differences": 2,
-    "weights": {"files": ["weights.png"], "columns": 2, "rows": 1, "tile_width": 2, "tile_height": 1, "border": 1,
-                "scale": [0.00392156862745098, 0.0078125], "offset": [0, -1]},
+    "weights": [{"files": ["weights.png"], "columns": 2, "rows": 1, "tile_width": 2, "tile_height": 1, "border": 1,
+                 "scale": [0.00392156862745098, 0.0078125], "offset": [0, -1]}],
     "maps": [{"name": "albedo", "width": 16, "height": 8, "channels": 1, "sample_type": "8-bit", "colour_space": "sRGB",
-              "weight_scale": 8, "metric_weight": 1, "neutral": {"file": "albedo/neutral.png"},
+              "weights": 0, "weight_scale": 8, "metric_weight": 1, "neutral": {"file": "albedo/neutral.png"},
+              "difference_bits": 8,
               "differences": [{"file": "albedo/difference_0.png", "scale": [0.5], "offset": [-64]},
                               {"file": "albedo/difference_1.png", "scale": [1.0], "offset": [-128]}]}],
     "method": {}})");

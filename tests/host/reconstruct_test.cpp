@@ -21,7 +21,7 @@ class Reconstruct : public testing::Test {
   Reconstruct() {
     sample_ = test::makeSample({{"albedo", 41, 29, 3, SampleType::kUint8, 8},
                                 {"normal", 82, 58, 3, SampleType::kUint16, 16},
-                                {"height", 41, 29, 1, SampleType::kFloat32, 8}},
+                                {"height", 41, 29, 1, SampleType::kFloat32, 4, 1, 16}},
                                3);
     test::writeSample(sample_, folder_ / "package");
   }

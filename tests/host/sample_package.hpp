@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -20,7 +21,7 @@ struct SamplePackage {
   PackageDescription description;
   std::vector<std::vector<std::byte>> neutrals;                  // per map
   std::vector<std::vector<std::vector<std::byte>>> differences;  // per map, C
-  std::vector<std::byte> weights;                                // [N][tile_height][tile_width][C]
+  std::vector<std::vector<std::byte>> weights;                   // per set, [N][tile_height][tile_width][C]
 };
 
 struct SampleMap {
@@ -30,6 +31,8 @@ struct SampleMap {
   int channels = 3;
   SampleType type = SampleType::kUint8;
   int weight_scale = 8;
+  int weight_set = 0;
+  int difference_bits = 8;
 };
 
 inline std::vector<std::byte> randomBytes(std::size_t count, std::mt19937_64& random) {
@@ -49,6 +52,25 @@ inline std::vector<std::byte> randomNeutral(const PackageMap& map, std::mt19937_
   return bytes;
 }
 
+/// Random weight maps on the grid of the first map of each set, each set with an encoding of its own.
+inline void addWeightSets(SamplePackage& sample, const std::vector<SampleMap>& maps, std::mt19937_64& random) {
+  PackageDescription& description = sample.description;
+  for (int set = 0;; ++set) {
+    const auto map = std::find_if(maps.begin(), maps.end(), [set](const SampleMap& m) { return m.weight_set == set; });
+    if (map == maps.end()) return;
+    PackageWeights& weights = description.weights.emplace_back();
+    for (int i = 0; i < description.differences; ++i) {
+      weights.scale.push_back((1.0 + 0.1 * i + 0.07 * set) / 255.0);
+      weights.offset.push_back(-0.1 * i + 0.2 * set);
+    }
+    const int cells =
+        package::weightCells(map->width, map->weight_scale) * package::weightCells(map->height, map->weight_scale);
+    const auto expressions = static_cast<int>(description.expressions.size());
+    sample.weights.push_back(
+        randomBytes(static_cast<std::size_t>(cells * expressions * description.differences), random));
+  }
+}
+
 inline SamplePackage makeSample(const std::vector<SampleMap>& maps = {{}}, int expressions = 5, int differences = 4) {
   SamplePackage sample;
   std::mt19937_64 random(5);
@@ -56,10 +78,6 @@ inline SamplePackage makeSample(const std::vector<SampleMap>& maps = {{}}, int e
   for (int n = 0; n < expressions; ++n) sample.description.expressions.push_back(fmt::format("expression_{}", n));
   sample.description.differences = differences;
   sample.description.method_json = R"({"name":"test","seed":5})";
-  for (int i = 0; i < differences; ++i) {
-    sample.description.weights.scale.push_back((1.0 + 0.1 * i) / 255.0);
-    sample.description.weights.offset.push_back(-0.1 * i);
-  }
   for (const SampleMap& shape : maps) {
     PackageMap map;
     map.name = shape.name;
@@ -68,24 +86,26 @@ inline SamplePackage makeSample(const std::vector<SampleMap>& maps = {{}}, int e
     map.channels = shape.channels;
     map.sample_type = shape.type;
     map.weight_scale = shape.weight_scale;
+    map.weight_set = shape.weight_set;
+    map.difference_bits = shape.difference_bits;
+    const int codes_per_step = shape.difference_bits == 16 ? 256 : 1;  // so that both span the same differences
     sample.differences.emplace_back();
     for (int i = 0; i < differences; ++i) {
       PackageDifference difference;
       for (int c = 0; c < shape.channels; ++c) {
-        difference.scale.push_back(0.4 + 0.1 * i + 0.03 * c);
-        difference.offset.push_back(-difference.scale.back() * (128 - 9 * i + c));
+        difference.scale.push_back((0.4 + 0.1 * i + 0.03 * c) / codes_per_step);
+        difference.offset.push_back(-difference.scale.back() * (codes_per_step * (128 - 9 * i + c)));
       }
       map.differences.push_back(difference);
       const auto samples =
           static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.height * shape.channels);
-      sample.differences.back().push_back(randomBytes(samples, random));
+      sample.differences.back().push_back(
+          randomBytes(samples * static_cast<std::size_t>(shape.difference_bits / 8), random));
     }
     sample.neutrals.push_back(randomNeutral(map, random));
     sample.description.maps.push_back(map);
   }
-  const auto cells = static_cast<std::size_t>(package::weightCells(maps[0].width, maps[0].weight_scale) *
-                                              package::weightCells(maps[0].height, maps[0].weight_scale));
-  sample.weights = randomBytes(cells * static_cast<std::size_t>(expressions * differences), random);
+  addWeightSets(sample, maps, random);
   return sample;
 }
 
@@ -110,7 +130,9 @@ inline void writeSample(SamplePackage& sample, const std::filesystem::path& dire
       }
     }
   }
-  writer.writeWeights(sample.weights);
+  for (std::size_t set = 0; set < sample.weights.size(); ++set) {
+    writer.writeWeights(static_cast<int>(set), sample.weights[set]);
+  }
   writer.finish();
 }
 

@@ -18,11 +18,12 @@ using image::SampleType;
 struct BlendCase {
   int width, height, channels, differences, weight_scale;
   SampleType type;
+  int difference_bits = 8;
 };
 
 void PrintTo(const BlendCase& c, std::ostream* out) {
   *out << c.width << "x" << c.height << " channels " << c.channels << " C " << c.differences << " s " << c.weight_scale
-       << " " << image::sampleTypeName(c.type);
+       << " " << image::sampleTypeName(c.type) << " differences in " << c.difference_bits << " bits";
 }
 
 /// Random textures and weights, for the kernel and for the reference.
@@ -59,14 +60,26 @@ struct Scene {
     return static_cast<double>(value);
   }
 
+  /// Random codes of texture `i`, whose differences span as much in 16 bits as in 8.
   void addDifference(int i, std::size_t samples) {
-    textures.codes.emplace_back();
-    for (std::size_t s = 0; s < samples; ++s) textures.codes.back().push_back(static_cast<unsigned char>(random()));
+    const int codes_per_step = size.difference_bits == 16 ? 256 : 1;
+    std::vector<double>& codes = textures.codes.emplace_back();
+    std::vector<std::byte>& stored =
+        difference_codes.emplace_back(samples * static_cast<std::size_t>(size.difference_bits / 8));
+    for (std::size_t s = 0; s < samples; ++s) {
+      const auto code = static_cast<std::uint16_t>(random() % static_cast<unsigned>(256 * codes_per_step));
+      codes.push_back(code);
+      if (size.difference_bits == 16) {
+        std::memcpy(stored.data() + 2 * s, &code, 2);
+      } else {
+        stored[s] = static_cast<std::byte>(code);
+      }
+    }
     textures.scale.emplace_back();
     textures.offset.emplace_back();
     for (int c = 0; c < size.channels; ++c) {
-      const int zero_code = 128 - 15 * i + c;
-      textures.scale.back().push_back(0.5 + 0.11 * i + 0.07 * c);
+      const int zero_code = (128 - 15 * i + c) * codes_per_step;
+      textures.scale.back().push_back((0.5 + 0.11 * i + 0.07 * c) / codes_per_step);
       textures.offset.back().push_back(-textures.scale.back().back() * zero_code);
       scale.push_back(static_cast<float>(textures.scale.back().back() * fullScale() / 255));
       zero.push_back(static_cast<float>(zero_code));
@@ -74,7 +87,8 @@ struct Scene {
   }
 
   blend::TextureShape shape() const {
-    return {size.width, size.channels, size.differences, size.type, size.weight_scale, scale, zero};
+    return {size.width, size.channels, size.differences, size.difference_bits, size.type, size.weight_scale,
+            scale,      zero};
   }
 
   cl::Buffer uploadWeights(float factor = 1.0f) const {
@@ -95,8 +109,9 @@ struct Scene {
     const std::size_t first = static_cast<std::size_t>(begin) * row_samples;
     const std::size_t count = static_cast<std::size_t>(end - begin) * row_samples;
     std::vector<std::span<const std::byte>> differences;
-    for (const auto& codes : textures.codes)
-      differences.push_back(std::as_bytes(std::span(codes)).subspan(first, count));
+    const auto code_bytes = static_cast<std::size_t>(size.difference_bits / 8);
+    for (const std::vector<std::byte>& codes : difference_codes)
+      differences.push_back(std::span(codes).subspan(first * code_bytes, count * code_bytes));
     const std::size_t bytes = image::sampleBytes(size.type);
     textures_on_device.load(begin, end - begin, std::span(neutral).subspan(first * bytes, count * bytes), differences);
     return textures_on_device;
@@ -131,6 +146,7 @@ struct Scene {
   std::mt19937_64 random{11};
   int columns, rows;
   std::vector<std::byte> neutral;
+  std::vector<std::vector<std::byte>> difference_codes;  // C, as they are loaded
   std::vector<float> scale, zero, weights;
   reference::Textures textures;
 };
@@ -206,7 +222,11 @@ INSTANTIATE_TEST_SUITE_P(
             BlendCase{93, 61, 3, 4, 8, SampleType::kUint16}, BlendCase{32, 32, 2, 4, 8, SampleType::kUint16},
             BlendCase{93, 61, 1, 1, 3, SampleType::kUint16}, BlendCase{32, 16, 4, 4, 24, SampleType::kUint16},
             BlendCase{93, 61, 3, 4, 8, SampleType::kFloat32}, BlendCase{32, 24, 1, 1, 8, SampleType::kFloat32},
-            BlendCase{93, 61, 4, 2, 6, SampleType::kFloat32}, BlendCase{512, 300, 3, 4, 8, SampleType::kUint8}),
+            BlendCase{93, 61, 4, 2, 6, SampleType::kFloat32}, BlendCase{512, 300, 3, 4, 8, SampleType::kUint8},
+            BlendCase{37, 21, 3, 6, 8, SampleType::kUint8}, BlendCase{37, 21, 1, 7, 4, SampleType::kUint16},
+            BlendCase{37, 21, 3, 4, 8, SampleType::kUint8, 16}, BlendCase{37, 21, 1, 1, 4, SampleType::kUint8, 16},
+            BlendCase{37, 21, 4, 5, 8, SampleType::kUint16, 16}, BlendCase{37, 21, 1, 3, 5, SampleType::kFloat32, 16},
+            BlendCase{17, 9, 2, 3, 1, SampleType::kUint8, 16}, BlendCase{93, 61, 3, 8, 8, SampleType::kUint16, 16}),
         testing::Values(KernelVariant::kCpu, KernelVariant::kGpu)));
 
 TEST(Blend, VariantsAgreeToTheRounding) {

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <random>
 #include <vector>
 
 #include "canary_buffer.hpp"
@@ -107,13 +109,15 @@ struct Computed {
   std::vector<double> expected;  ///< the same
 };
 
+void skipLargeSizes(const Case& which) {
+  const BandShape& shape = which.shape;
+  if (test::smallSizesOnly() && (shape.expressions > 3 || shape.width * shape.rows > 930))
+    GTEST_SKIP() << "small sizes only";
+}
+
 class DifferenceTexture : public testing::TestWithParam<Case> {
  protected:
-  void SetUp() override {
-    const BandShape& shape = GetParam().shape;
-    if (test::smallSizesOnly() && (shape.expressions > 3 || shape.width * shape.rows > 930))
-      GTEST_SKIP() << "small sizes only";
-  }
+  void SetUp() override { skipLargeSizes(GetParam()); }
 };
 
 TEST_P(DifferenceTexture, EqualsReference) {
@@ -153,18 +157,38 @@ TEST_P(DifferenceTexture, RangeCoversTheTexelsUnderAMask) {
   }
 }
 
-TEST_P(DifferenceTexture, EncodesEveryTexelOfTheBand) {
-  Computed computed(GetParam());
+std::vector<double> toNumbers(std::span<const std::byte> codes, int bits) {
+  std::vector<double> numbers(codes.size() / static_cast<std::size_t>(bits / 8));
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    std::uint16_t wide = static_cast<std::uint16_t>(codes[i]);
+    if (bits == 16) std::memcpy(&wide, codes.data() + 2 * i, 2);
+    numbers[i] = wide;
+  }
+  return numbers;
+}
+
+class DifferenceTextureCodes : public testing::TestWithParam<std::tuple<Case, int>> {
+ protected:
+  void SetUp() override { skipLargeSizes(std::get<0>(GetParam())); }
+};
+
+TEST_P(DifferenceTextureCodes, AreThoseOfEveryTexelOfTheBand) {
+  const auto& [which, bits] = GetParam();
+  Computed computed(which);
   const BandShape& shape = computed.shape;
+  const double largest = bits == 16 ? 65535.0 : 255.0;
   std::vector<TextureEncoding> encoding;
   for (std::size_t plane = 0; plane < computed.planes(); ++plane) {
     // Narrower than the values, so that some are clamped; the last plane is a constant.
-    encoding.push_back({plane + 1 == computed.planes() ? 0.0f : 0.25f + 0.125f * static_cast<float>(plane), -20.5f});
+    const float scale = (0.25f + 0.125f * static_cast<float>(plane)) * 255.0f / static_cast<float>(largest);
+    encoding.push_back({plane + 1 == computed.planes() ? 0.0f : scale, -20.5f});
   }
   const auto texels = static_cast<std::size_t>(shape.rows) * static_cast<std::size_t>(shape.width);
-  std::vector<std::uint8_t> guarded(texels * computed.planes() + 64, 0xA5);
-  computed.textures.encode(computed.tiles, shape, encoding, std::span(guarded).first(guarded.size() - 64));
-  for (std::size_t i = guarded.size() - 64; i < guarded.size(); ++i) ASSERT_EQ(guarded[i], 0xA5);
+  const std::size_t bytes = texels * computed.planes() * static_cast<std::size_t>(bits / 8);
+  std::vector<std::byte> guarded(bytes + 64, std::byte{0xA5});
+  computed.textures.encode(computed.tiles, shape, encoding, bits, std::span(guarded).first(bytes));
+  for (std::size_t i = bytes; i < guarded.size(); ++i) ASSERT_EQ(guarded[i], std::byte{0xA5});
+  const std::vector<double> codes = toNumbers(std::span(guarded).first(bytes), bits);
 
   // Values of the band in rows; 0 where there is no tile.
   std::vector<double> values(texels * computed.planes(), 0.0);
@@ -183,22 +207,21 @@ TEST_P(DifferenceTexture, EncodesEveryTexelOfTheBand) {
   }
   for (std::size_t i = 0; i < values.size(); ++i) {
     const std::size_t plane = i / (texels * channels) * channels + i % channels;
-    const double position = reference::bytePosition(values[i], static_cast<double>(encoding[plane].scale),
-                                                    static_cast<double>(encoding[plane].offset));
-    // Half upwards, with room for the last bit of float32 at the half itself.
-    ASSERT_GE(static_cast<double>(guarded[i]), position - 0.5 - test::kEncodeTie) << "at " << i;
-    ASSERT_LE(static_cast<double>(guarded[i]), position + 0.5 + test::kEncodeTie) << "at " << i;
+    const double position = reference::codePosition(values[i], static_cast<double>(encoding[plane].scale),
+                                                    static_cast<double>(encoding[plane].offset), largest);
+    // Half upwards, with room for the last bits of float32 at the half itself.
+    ASSERT_GE(codes[i], position - 0.5 - test::kEncodeTie * largest) << "at " << i;
+    ASSERT_LE(codes[i], position + 0.5 + test::kEncodeTie * largest) << "at " << i;
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, DifferenceTexture,
-                         testing::Values(Case{{37, 16, 3, 3, SampleType::kUint8}, 3, 2, 4},
-                                         Case{{93, 16, 3, 3, SampleType::kUint8}, 5, 4, 4},
-                                         Case{{93, 10, 1, 1, SampleType::kUint8}, 3, 2, 1},
-                                         Case{{40, 16, 4, 3, SampleType::kUint16}, 3, 3, 2},
-                                         Case{{93, 32, 3, 20, SampleType::kUint8}, 14, 12, 4},
-                                         Case{{93, 32, 4, 37, SampleType::kFloat32}, 13, 12, 8},
-                                         Case{{93, 10, 1, 6, SampleType::kFloat32}, 9, 8, 3}));
+const auto kCases = testing::Values(
+    Case{{37, 16, 3, 3, SampleType::kUint8}, 3, 2, 4}, Case{{93, 16, 3, 3, SampleType::kUint8}, 5, 4, 4},
+    Case{{93, 10, 1, 1, SampleType::kUint8}, 3, 2, 1}, Case{{40, 16, 4, 3, SampleType::kUint16}, 3, 3, 2},
+    Case{{93, 32, 3, 20, SampleType::kUint8}, 14, 12, 4}, Case{{93, 32, 4, 37, SampleType::kFloat32}, 13, 12, 8},
+    Case{{93, 10, 1, 6, SampleType::kFloat32}, 9, 8, 3});
+INSTANTIATE_TEST_SUITE_P(Shapes, DifferenceTexture, kCases);
+INSTANTIATE_TEST_SUITE_P(Shapes, DifferenceTextureCodes, testing::Combine(kCases, testing::Values(8, 16)));
 
 /// One expression that differs by 1 everywhere, under one mask that is 1 in the upper half of a tile and 0 below.
 struct HalfTile {
@@ -229,14 +252,34 @@ TEST(DifferenceTexture, RangeLeavesOutTexelsWithoutAMask) {
 
 TEST(DifferenceTexture, HalvesRoundUpwards) {
   HalfTile tile;  // scale 2 makes 0.5 of 1
-  std::vector<std::uint8_t> bytes(kTileTexels);
-  tile.textures.encode(tile.tiles, tile.shape, std::vector<TextureEncoding>{{2.0f, 0.0f}}, bytes);
-  std::vector<std::uint8_t> expected(kTileTexels, 0);
-  std::fill_n(expected.begin(), kTileTexels / 2, std::uint8_t{1});
-  EXPECT_EQ(bytes, expected);
+  std::vector<double> expected(kTileTexels, 0.0);
+  std::fill_n(expected.begin(), kTileTexels / 2, 1.0);
+  for (const int bits : {8, 16}) {
+    std::vector<std::byte> codes(static_cast<std::size_t>(kTileTexels * bits / 8));
+    tile.textures.encode(tile.tiles, tile.shape, std::vector<TextureEncoding>{{2.0f, 0.0f}}, bits, codes);
+    EXPECT_EQ(toNumbers(codes, bits), expected) << bits;
+  }
 }
 
-TEST(DifferenceTexture, BandWithoutTilesIsTheByteOfZero) {
+/// Texels outside the masks must decode to 0, not nearly: with the encodings that compress chooses, at their largest
+/// codes.
+TEST(DifferenceTexture, ZeroHasItsCodeInEveryEncoding) {
+  HalfTile tile;  // below its middle there is no mask
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> end(0.01f, 200.0f);
+  for (int round = 0; round < 100; ++round) {
+    const float low = -end(random), high = round % 2 == 0 ? 0.0f : end(random);
+    for (const int bits : {8, 16}) {
+      const TextureEncoding encoding = encodingFor({low, high}, bits);
+      std::vector<std::byte> codes(static_cast<std::size_t>(kTileTexels * bits / 8));
+      tile.textures.encode(tile.tiles, tile.shape, std::vector<TextureEncoding>{encoding}, bits, codes);
+      const double zero = static_cast<double>(-encoding.offset / encoding.scale);
+      ASSERT_EQ(toNumbers(codes, bits).back(), zero) << low << " " << high << " " << bits;
+    }
+  }
+}
+
+TEST(DifferenceTexture, BandWithoutTilesIsTheCodeOfZero) {
   const BandShape shape{33, 5, 2, 2, SampleType::kUint8};
   device::DeviceContext& context = test::testDevice();
   TileMasks none;
@@ -246,11 +289,14 @@ TEST(DifferenceTexture, BandWithoutTilesIsTheByteOfZero) {
   DifferenceTextures textures(context, {1, 1, 2, {0.5f, 0.5f}});
   textures.compute(tiles, context.allocate(1, CL_MEM_READ_WRITE, "none"), shape);
   for (const TextureRange& range : textures.range(tiles, shape)) EXPECT_GT(range.min, range.max);
-  std::vector<std::uint8_t> bytes(33 * 5 * 2);
-  textures.encode(tiles, shape, std::vector<TextureEncoding>{{1.0f, -128.0f}, {2.0f, -20.0f}}, bytes);
-  for (std::size_t i = 0; i < bytes.size(); i += 2) {
-    ASSERT_EQ(bytes[i], 128);
-    ASSERT_EQ(bytes[i + 1], 10);
+  for (const int bits : {8, 16}) {
+    std::vector<std::byte> codes(static_cast<std::size_t>(33 * 5 * 2 * bits / 8));
+    textures.encode(tiles, shape, std::vector<TextureEncoding>{{1.0f, -128.0f}, {2.0f, -20.0f}}, bits, codes);
+    const std::vector<double> numbers = toNumbers(codes, bits);
+    for (std::size_t i = 0; i < numbers.size(); i += 2) {
+      ASSERT_EQ(numbers[i], 128.0);
+      ASSERT_EQ(numbers[i + 1], 10.0);
+    }
   }
 }
 

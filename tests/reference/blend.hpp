@@ -10,11 +10,11 @@ namespace reference {
 
 struct Textures {
   int width, height, channels, differences, weight_scale;
-  double full_scale;                              // of the samples: 255, 65535 or 1
-  std::vector<double> neutral;                    // [height][width][channels], raw samples
-  std::vector<std::vector<unsigned char>> codes;  // C times [height][width][channels]
-  std::vector<std::vector<double>> scale;         // [C][channels], 1/255 of full scale per code
-  std::vector<std::vector<double>> offset;        // [C][channels]
+  double full_scale;                        // of the samples: 255, 65535 or 1
+  std::vector<double> neutral;              // [height][width][channels], raw samples
+  std::vector<std::vector<double>> codes;   // C times [height][width][channels], whole numbers of 8 or 16 bits
+  std::vector<std::vector<double>> scale;   // [C][channels], 1/255 of full scale per code
+  std::vector<std::vector<double>> offset;  // [C][channels]
 };
 
 /// weights [cell_rows][cell_columns][C] at the position of texel (x, y), channel i: bilinear, clamped to the grid.

@@ -1,4 +1,4 @@
-// Reference for kernels/cl/difference_texture*.cl: Eq. 5 of FaceZip and the 8-bit encoding, texel by texel in double.
+// Reference for kernels/cl/difference_texture*.cl: Eq. 5 of FaceZip and the integer encoding, texel by texel in double.
 #pragma once
 
 #include <algorithm>
@@ -38,9 +38,9 @@ inline std::vector<double> differenceTexture(const std::vector<std::pair<int, st
   return result;
 }
 
-/// Where `value` lies on the scale of bytes, before rounding.
-inline double bytePosition(double value, double scale, double offset) {
-  return scale > 0.0 ? std::clamp((value - offset) / scale, 0.0, 255.0) : 0.0;
+/// Where `value` lies on the scale of codes, 0 to `largest`, before rounding.
+inline double codePosition(double value, double scale, double offset, double largest) {
+  return scale > 0.0 ? std::clamp((value - offset) / scale, 0.0, largest) : 0.0;
 }
 
 }  // namespace facezip::reference

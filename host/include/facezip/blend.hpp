@@ -28,7 +28,7 @@ class Blender {
   Blender& operator=(Blender&&) noexcept;
 
   /// Sets beta, for the blend() calls that follow, of any map. Costs one pass over the weight maps of the expressions
-  /// whose beta is not zero.
+  /// whose beta is not zero, of each set of weights.
   /// beta  N values in the order of Package::expressions(); any sign, finite
   /// Throws InputError for another count, and naming the expression whose value is NaN or infinite.
   void setWeights(std::span<const float> beta);

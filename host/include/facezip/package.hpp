@@ -11,11 +11,11 @@
 
 namespace facezip {
 
-/// One difference texture D_i of one map: an 8-bit image whose codes decode to D_i = scale * code + offset.
+/// One difference texture D_i of one map: an image of 8- or 16-bit codes that decode to D_i = scale * code + offset.
 struct PackageDifference {
   std::string file;            ///< relative to the package
   std::vector<double> scale;   ///< one per channel, >= 0, in units of 1/255 of full scale for each code
-  std::vector<double> offset;  ///< one per channel, -scale times a whole code in [0, 255]: zero is exact
+  std::vector<double> offset;  ///< one per channel, -scale times a whole code, in double: zero is exact
 };
 
 /// One map (albedo, normal, ...): its neutral texture I_0 and its difference textures.
@@ -27,15 +27,18 @@ struct PackageMap {
   SampleType sample_type = SampleType::kUint8;  ///< of the neutral, and so of every frame that is blended from it
   std::string colour_space;                     ///< "sRGB", "linear" or "" (not said)
   int weight_scale = 8;                         ///< s: texels to a cell of the weight maps, along each axis
+  int weight_set = 0;                           ///< which of Package::weightSets() this map is blended with
   double metric_weight = 1.0;                   ///< how much the map counted in the compression
   std::string neutral_file;                     ///< relative to the package
+  int difference_bits = 8;                      ///< of a code of the difference textures: 8 or 16
   std::vector<PackageDifference> differences;   ///< C, in the order of the weight channels
 
   /// Bytes of a whole neutral texture, or of a blended frame: height x width x channels samples, no padding.
   std::size_t frameBytes() const;
 };
 
-/// The weight maps W_n of all expressions: C channels a cell, one tile an expression, in one image (two above C = 4).
+/// A set of weight maps: W_n of all expressions, C channels a cell, one tile an expression, in one image (two above
+/// C = 4). Maps share one set, or have sets of their own.
 struct PackageWeights {
   std::vector<std::string> files;  ///< relative to the package; file f holds channels 4 f to 4 f + 3
   int columns = 0;                 ///< tiles in a row of the atlas; expression n is tile n in row-major order
@@ -53,7 +56,7 @@ struct PackageDescription {
   std::string name;                      ///< the capture's
   std::vector<std::string> expressions;  ///< N names in the order of the weight vector beta
   int differences = 4;                   ///< C, 1 to 8
-  PackageWeights weights;
+  std::vector<PackageWeights> weights;   ///< at least one; each is used by a map
   std::vector<PackageMap> maps;
   /// EXPERIMENTAL: a JSON object that records how the package was made; its fields may change in any version.
   std::string method_json = "{}";
@@ -78,12 +81,14 @@ class Package {
   int mapIndex(const std::string& map_name) const;
   /// C, the number of difference textures of each map.
   int differences() const noexcept { return description_.differences; }
-  const PackageWeights& weights() const noexcept { return description_.weights; }
+  /// Sets of weight maps: one that all maps share, or several; PackageMap::weight_set counts in them.
+  const std::vector<PackageWeights>& weightSets() const noexcept { return description_.weights; }
   /// EXPERIMENTAL: how the package was made, a JSON object.
   const std::string& methodJson() const noexcept { return description_.method_json; }
 
   /// Bytes of the decoded texels that a renderer keeps (FaceZip, Table 1): per map 1 + C textures (the neutral in its
-  /// own type, differences in 8 bit), and N weight maps of C bytes a cell without their borders.
+  /// own type, differences in their 8 or 16 bits), and of each set N weight maps of C bytes a cell without their
+  /// borders.
   std::uint64_t bytesInMemory() const;
   /// Bytes of all files of the package.
   std::uint64_t bytesOnDisk() const noexcept { return bytes_on_disk_; }

@@ -22,13 +22,12 @@ struct BandBlender::State {
   int most_rows = 0;
 };
 
-BandBlender::BandBlender(const Package& package, int map_index, std::shared_ptr<WeightMaps> weights,
-                         const Device& device)
-    : state_(std::make_unique<State>(
-          State{device.context(), std::move(weights), package.expressions(),
-                package.maps()[static_cast<std::size_t>(map_index)].height,
-                textureShape(package.maps()[static_cast<std::size_t>(map_index)], package.differences()),
-                MapReader(package, map_index), std::nullopt, 0})) {}
+BandBlender::BandBlender(const Package& package, int map_index, const WeightSets& weights, const Device& device) {
+  const PackageMap& map = package.maps()[static_cast<std::size_t>(map_index)];
+  state_ = std::make_unique<State>(State{device.context(), weights[static_cast<std::size_t>(map.weight_set)],
+                                         package.expressions(), map.height, textureShape(map, package.differences()),
+                                         MapReader(package, map_index), std::nullopt, 0});
+}
 
 BandBlender::~BandBlender() = default;
 
@@ -65,7 +64,7 @@ void BandBlender::blend(std::span<const float> beta, std::span<std::byte> out) {
   state_->textures->blend(state_->weights->weights(), out);
 }
 
-std::shared_ptr<WeightMaps> loadWeightMaps(const Package& package, const Device& device) {
+WeightSets loadWeightMaps(const Package& package, const Device& device) {
   return loadWeightMaps(package, device.context());
 }
 

@@ -11,14 +11,16 @@
 namespace facezip::blend {
 
 class WeightMaps;
+/// The sets of weight maps of a package, on a device, in the order of Package::weightSets().
+using WeightSets = std::vector<std::shared_ptr<WeightMaps>>;
 
 /// Reads a band of the neutral and the difference textures from disk, then blends it with any number of weight vectors.
 /// The same code as Blender: the same bits for every row.
 class BandBlender {
  public:
-  /// Opens the images of map `map_index`. `weights` may be shared by the maps of a package (loadWeightMaps).
+  /// Opens the images of map `map_index`, which takes its own set of `weights` (loadWeightMaps, once for all maps).
   /// Throws InputError, DeviceError.
-  BandBlender(const Package& package, int map_index, std::shared_ptr<WeightMaps> weights, const Device& device);
+  BandBlender(const Package& package, int map_index, const WeightSets& weights, const Device& device);
   ~BandBlender();
 
   /// Rows, a multiple of rowStep(), whose textures and frame take at most `bytes` on host and device together.
@@ -40,7 +42,7 @@ class BandBlender {
   std::unique_ptr<State> state_;
 };
 
-/// Reads the weight atlas of `package` onto `device`. Throws InputError, DeviceError.
-std::shared_ptr<WeightMaps> loadWeightMaps(const Package& package, const Device& device);
+/// Reads every set of weight maps of `package` onto `device`. Throws InputError, DeviceError.
+WeightSets loadWeightMaps(const Package& package, const Device& device);
 
 }  // namespace facezip::blend

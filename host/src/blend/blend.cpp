@@ -30,8 +30,10 @@ void splitRow(const std::byte* row, int width, int channels, std::size_t tile_st
   }
 }
 
-void splitNeutralRow(const TextureShape& shape, const std::byte* row, std::size_t tile_stride, std::byte* to) {
-  switch (image::sampleBytes(shape.sample_type)) {
+/// splitRow for samples or codes of `bytes` bytes.
+void splitRowOf(std::size_t bytes, const TextureShape& shape, const std::byte* row, std::size_t tile_stride,
+                std::byte* to) {
+  switch (bytes) {
     case 1:
       return splitRow<std::uint8_t>(row, shape.width, shape.channels, tile_stride, to);
     case 2:
@@ -48,9 +50,11 @@ std::vector<float> encodingOf(const TextureShape& shape) {
 }
 
 std::string definesOf(const TextureShape& shape, bool gpu) {
-  return fmt::format("-D LANES={} -D CHANNELS={} -D DIFFERENCES={} -D SCALE={} -D SAMPLE_TYPE={} -D TILE_ROW_BYTES={}",
-                     gpu ? 1 : kTileWidth, shape.channels, shape.differences, shape.weight_scale,
-                     static_cast<int>(shape.sample_type), shape.tileRowBytes());
+  return fmt::format(
+      "-D LANES={} -D CHANNELS={} -D DIFFERENCES={} -D SCALE={} -D SAMPLE_TYPE={} -D CODE_BITS={} "
+      "-D TILE_CODES_OFFSET={} -D TILE_ROW_BYTES={}",
+      gpu ? 1 : kTileWidth, shape.channels, shape.differences, shape.weight_scale, static_cast<int>(shape.sample_type),
+      shape.difference_bits, shape.tileCodesOffset(), shape.tileRowBytes());
 }
 
 int floorDivide(int numerator, int denominator) {
@@ -59,10 +63,14 @@ int floorDivide(int numerator, int denominator) {
 
 }  // namespace
 
+std::size_t TextureShape::tileCodesOffset() const {
+  return device::roundUp(size(channels) * image::sampleBytes(sample_type) * kTileWidth, codeBytes() * kTileWidth);
+}
+
 std::size_t TextureShape::tileRowBytes() const {
-  const std::size_t sample = image::sampleBytes(sample_type);
-  const std::size_t planes = size(channels) * (sample + size(differences));
-  return device::roundUp(planes * kTileWidth, sample * kTileWidth);
+  const std::size_t codes = size(channels) * size(differences) * codeBytes() * kTileWidth;
+  return device::roundUp(tileCodesOffset() + codes,
+                         std::max(image::sampleBytes(sample_type), codeBytes()) * kTileWidth);
 }
 
 TextureRows::TextureRows(device::DeviceContext& context, TextureShape shape, int most_rows, int cell_columns,
@@ -96,16 +104,18 @@ void TextureRows::load(int first, int rows, std::span<const std::byte> neutral,
   assert(neutral.size() == size(rows) * shape_.rowBytes() && differences.size() == size(shape_.differences));
   const int tile_rows = (rows + kTileRows - 1) / kTileRows;
   const std::size_t tile_bytes = kTileRows * shape_.tileRowBytes();
-  const std::size_t neutral_bytes = size(shape_.channels) * kTileWidth * image::sampleBytes(shape_.sample_type);
+  const std::size_t code_bytes = shape_.codeBytes();
+  const std::size_t texture_bytes = size(shape_.channels) * kTileWidth * code_bytes;  // of one texture in a tile row
   tiles_.resize(size(tile_rows) * shape_.tilesBytes());
   tbb::parallel_for(0, rows, [&](int row) {
     std::byte* to =
         tiles_.data() + size(row / kTileRows) * shape_.tilesBytes() + size(row % kTileRows) * shape_.tileRowBytes();
-    splitNeutralRow(shape_, neutral.data() + size(row) * shape_.rowBytes(), tile_bytes, to);
+    splitRowOf(image::sampleBytes(shape_.sample_type), shape_, neutral.data() + size(row) * shape_.rowBytes(),
+               tile_bytes, to);
+    to += shape_.tileCodesOffset();
     for (int i = 0; i < shape_.differences; ++i) {
-      splitRow<std::uint8_t>(differences[size(i)].data() + size(row) * shape_.differenceRowBytes(), shape_.width,
-                             shape_.channels, tile_bytes,
-                             to + neutral_bytes + size(i) * size(shape_.channels) * kTileWidth);
+      splitRowOf(code_bytes, shape_, differences[size(i)].data() + size(row) * shape_.differenceRowBytes(), tile_bytes,
+                 to + size(i) * texture_bytes);
     }
   });
   context_.write(textures_, tiles_.data(), tiles_.size(), "the textures of a map",

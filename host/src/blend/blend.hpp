@@ -19,6 +19,7 @@ struct TextureShape {
   int width = 0;                                              ///< texels
   int channels = 0;                                           ///< 1 to 4
   int differences = 0;                                        ///< C, 1 to 8
+  int difference_bits = 8;                                    ///< of a code: 8 or 16
   image::SampleType sample_type = image::SampleType::kUint8;  ///< of neutral and frame
   int weight_scale = 0;                                       ///< s
   std::vector<float>
@@ -27,12 +28,15 @@ struct TextureShape {
 
   int tilesAcross() const { return (width + kTileWidth - 1) / kTileWidth; }
   std::size_t rowBytes() const { return frameShape(1).rowBytes(); }  ///< of neutral and frame
+  std::size_t codeBytes() const { return difference_bits == 16 ? 2 : 1; }
   std::size_t differenceRowBytes() const {
-    return static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(channels) * codeBytes();
   }
-  /// One texel row of one tile: 16 texels of the neutral and of all differences, padded so that each row's neutral is
-  /// aligned for a vector load.
+  /// One texel row of one tile: 16 texels of the neutral and of all differences, padded so that both are aligned for
+  /// vector loads in every row.
   std::size_t tileRowBytes() const;
+  /// Where the codes begin in it.
+  std::size_t tileCodesOffset() const;
   /// A row of tiles.
   std::size_t tilesBytes() const { return static_cast<std::size_t>(tilesAcross()) * kTileRows * tileRowBytes(); }
   image::ImageShape frameShape(int rows) const { return {width, rows, channels, sample_type}; }

@@ -44,15 +44,18 @@ struct Blender::State {
   Device device;  // keeps the context alive
   std::vector<std::string> expressions;
   std::vector<PackageMap> maps;
-  std::shared_ptr<blend::WeightMaps> weights;
-  std::vector<std::deque<blend::TextureRows>> textures;  // per map
+  std::vector<std::shared_ptr<blend::WeightMaps>> weights;  // per set
+  std::vector<std::deque<blend::TextureRows>> textures;     // per map
+
+  blend::WeightMaps& weightsOf(std::size_t map) { return *weights[static_cast<std::size_t>(maps[map].weight_set)]; }
 };
 
 Blender::Blender(const Package& package, const Device& device)
     : state_(std::make_unique<State>(
           State{device, package.expressions(), package.maps(), blend::loadWeightMaps(package, device.context()), {}})) {
   for (std::size_t m = 0; m < state_->maps.size(); ++m) {
-    state_->textures.push_back(loadMap(package, static_cast<int>(m), state_->weights->grid(), device.context()));
+    const blend::WeightGrid& grid = state_->weightsOf(m).grid();
+    state_->textures.push_back(loadMap(package, static_cast<int>(m), grid, device.context()));
   }
   setWeights(std::vector<float>(state_->expressions.size(), 0.0f));
 }
@@ -63,7 +66,7 @@ Blender& Blender::operator=(Blender&&) noexcept = default;
 
 void Blender::setWeights(std::span<const float> beta) {
   blend::requireWeights(beta, state_->expressions);
-  state_->weights->blend(beta);
+  for (const std::shared_ptr<blend::WeightMaps>& set : state_->weights) set->blend(beta);
 }
 
 void Blender::blend(int map_index, std::span<std::byte> out) {
@@ -78,7 +81,7 @@ void Blender::blend(int map_index, std::span<std::byte> out) {
   }
   for (blend::TextureRows& rows : state_->textures[static_cast<std::size_t>(map_index)]) {
     const std::size_t row_bytes = rows.shape().rowBytes();
-    rows.blend(state_->weights->weights(),
+    rows.blend(state_->weightsOf(static_cast<std::size_t>(map_index)).weights(),
                out.subspan(static_cast<std::size_t>(rows.begin()) * row_bytes,
                            static_cast<std::size_t>(rows.end() - rows.begin()) * row_bytes));
   }

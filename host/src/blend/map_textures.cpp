@@ -21,6 +21,7 @@ TextureShape textureShape(const PackageMap& map, int differences) {
   shape.width = map.width;
   shape.channels = map.channels;
   shape.differences = differences;
+  shape.difference_bits = map.difference_bits;
   shape.sample_type = map.sample_type;
   shape.weight_scale = map.weight_scale;
   const double step = 1.0 / static_cast<double>(image::unit255(shape.sample_type));
@@ -57,13 +58,15 @@ void MapReader::load(TextureRows& textures) {
   }
 }
 
-std::shared_ptr<WeightMaps> loadWeightMaps(const Package& package, device::DeviceContext& context) {
-  const PackageWeights& weights = package.weights();
+namespace {
+
+std::shared_ptr<WeightMaps> loadWeightSet(const Package& package, int set, device::DeviceContext& context) {
+  const PackageWeights& weights = package.weightSets()[static_cast<std::size_t>(set)];
   const WeightGrid grid{weights.tile_width, weights.tile_height, static_cast<int>(package.expressions().size()),
                         weights.scale, weights.offset};
   std::vector<std::byte> codes(grid.codeBytes());
   package::readWeightAtlas(
-      package.description(), package.directory(),
+      package.description(), set, package.directory(),
       [&](int expression, int cell_row, int first_channel, int row_channels, std::span<const std::byte> row) {
         const std::size_t first_cell = static_cast<std::size_t>(cell_row) * static_cast<std::size_t>(grid.columns);
         const std::size_t channels = static_cast<std::size_t>(row_channels);
@@ -73,6 +76,16 @@ std::shared_ptr<WeightMaps> loadWeightMaps(const Package& package, device::Devic
         }
       });
   return std::make_shared<WeightMaps>(context, grid, codes);
+}
+
+}  // namespace
+
+std::vector<std::shared_ptr<WeightMaps>> loadWeightMaps(const Package& package, device::DeviceContext& context) {
+  std::vector<std::shared_ptr<WeightMaps>> sets;
+  for (int set = 0; set < static_cast<int>(package.weightSets().size()); ++set) {
+    sets.push_back(loadWeightSet(package, set, context));
+  }
+  return sets;
 }
 
 }  // namespace facezip::blend

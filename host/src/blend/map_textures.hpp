@@ -28,7 +28,7 @@ class MapReader {
   std::vector<std::vector<std::byte>> row_bytes_;  // a few rows of each
 };
 
-/// Reads the weight atlas onto the device of `context`.
-std::shared_ptr<WeightMaps> loadWeightMaps(const Package& package, device::DeviceContext& context);
+/// Reads every set of weight maps onto the device of `context`.
+std::vector<std::shared_ptr<WeightMaps>> loadWeightMaps(const Package& package, device::DeviceContext& context);
 
 }  // namespace facezip::blend

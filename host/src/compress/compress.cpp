@@ -266,6 +266,7 @@ class Compression {
     described.colour_space = map.source->colour_space;
     described.weight_scale = map.weight_scale;
     described.metric_weight = map.source->metric_weight;
+    described.difference_bits = kCodeBits;
     for (int i = 0; i < options_.differences; ++i) {
       PackageDifference difference;
       for (int c = 0; c < shape.channels; ++c) {
@@ -278,25 +279,25 @@ class Compression {
     return described;
   }
 
-  // Pass 3: difference textures (Eq. 5) as bytes, beside the neutral as it is.
+  // Pass 3: difference textures (Eq. 5) as codes, beside the neutral as it is.
   void writeMap(package::PackageWriter& writer, int index, DifferenceTextures& textures,
                 const std::vector<TextureEncoding>& encoding) {
     OpenMap& map = maps_.maps[static_cast<std::size_t>(index)];
-    std::vector<std::uint8_t> codes;
+    std::vector<std::byte> codes;
     forEachBand(map, "writing", [&](const MapBand& band) {
       const int rows = band.end - band.begin;
-      const std::size_t bytes =
-          static_cast<std::size_t>(rows) * static_cast<std::size_t>(band.shape.width * band.shape.channels);
+      const std::size_t bytes = static_cast<std::size_t>(rows) *
+                                static_cast<std::size_t>(band.shape.width * band.shape.channels) * (kCodeBits / 8);
       codes.resize(bytes * static_cast<std::size_t>(options_.differences));
       textures.compute(band.tiles, band.differences, band.shape);
-      textures.encode(band.tiles, band.shape, encoding, codes);
+      textures.encode(band.tiles, band.shape, encoding, kCodeBits, codes);
       const std::size_t neutral_bytes = static_cast<std::size_t>(rows) * map.samples->shape().rowBytes();
       tbb::parallel_for(-1, options_.differences, [&](int i) {
         if (i < 0) {
           writer.writeNeutralRows(index, band.samples.first(neutral_bytes), rows);
         } else {
-          writer.writeDifferenceRows(
-              index, i, std::as_bytes(std::span(codes)).subspan(static_cast<std::size_t>(i) * bytes, bytes), rows);
+          writer.writeDifferenceRows(index, i, std::span(codes).subspan(static_cast<std::size_t>(i) * bytes, bytes),
+                                     rows);
         }
       });
     });
@@ -309,7 +310,7 @@ class Compression {
     const std::size_t cells = grid_.cells.cells();
     std::vector<std::uint8_t> codes(mapper.outputBytes(cells));
     mapper.fill(grid_.cells, 0, cells, codes);
-    writer.writeWeights(std::as_bytes(std::span(codes)));
+    writer.writeWeights(0, std::as_bytes(std::span(codes)));
     clock_.book("weight maps");
   }
 
@@ -319,8 +320,9 @@ class Compression {
     description.name = capture_.name;
     description.expressions = capture_.expressions;
     description.differences = options_.differences;
-    description.weights.scale.assign(static_cast<std::size_t>(options_.differences), 1.0 / 255.0);
-    description.weights.offset.assign(static_cast<std::size_t>(options_.differences), 0.0);
+    PackageWeights& weights = description.weights.emplace_back();  // the set that all maps share
+    weights.scale.assign(static_cast<std::size_t>(options_.differences), 1.0 / 255.0);
+    weights.offset.assign(static_cast<std::size_t>(options_.differences), 0.0);
     description.method_json = methodJson(options_, report_, face_.region_description);
     std::vector<std::vector<TextureEncoding>> encodings;
     for (OpenMap& map : maps_.maps) {

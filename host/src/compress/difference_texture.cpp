@@ -30,7 +30,9 @@ std::vector<float> kernelCoefficients(const TextureCoefficients& table) {
   return result;
 }
 
-std::string channelDefines(const BandShape& shape) { return fmt::format("-D CHANNELS={}", shape.channels); }
+std::string encodeDefines(const BandShape& shape, int bits) {
+  return fmt::format("-D CHANNELS={} -D CODE_BITS={}", shape.channels, bits);
+}
 
 }  // namespace
 
@@ -44,7 +46,7 @@ DifferenceTextures::DifferenceTextures(device::DeviceContext& context, const Tex
       textures_(context, "difference textures"),
       ranges_(context, "ranges of the difference textures"),
       encoding_(context, "encoding of the difference textures", CL_MEM_READ_ONLY),
-      bytes_(context, "bytes of the difference textures") {
+      codes_(context, "codes of the difference textures") {
   assert(textures_count_ >= 1 && textures_count_ <= 8 && expressions_ >= 1);
 }
 
@@ -101,11 +103,11 @@ std::vector<TextureRange> DifferenceTextures::range(const DeviceTiles& tiles, co
   return result;
 }
 
-void DifferenceTextures::clear(const BandShape& shape) {
+void DifferenceTextures::clear(const BandShape& shape, int bits) {
   cl::Kernel kernel =
-      context_.kernel("difference_texture_encode.cl", "difference_texture_clear", channelDefines(shape));
+      context_.kernel("difference_texture_encode.cl", "difference_texture_clear", encodeDefines(shape, bits));
   kernel.setArg(0, encoding_.buffer());
-  kernel.setArg(1, bytes_.buffer());
+  kernel.setArg(1, codes_.buffer());
   context_.run(kernel,
                cl::NDRange(static_cast<std::size_t>(shape.width), static_cast<std::size_t>(shape.rows),
                            static_cast<std::size_t>(textures_count_)),
@@ -113,30 +115,31 @@ void DifferenceTextures::clear(const BandShape& shape) {
 }
 
 void DifferenceTextures::encode(const DeviceTiles& tiles, const BandShape& shape,
-                                std::span<const TextureEncoding> encoding, std::span<std::uint8_t> bytes) {
+                                std::span<const TextureEncoding> encoding, int bits, std::span<std::byte> codes) {
   assert(encoding.size() == static_cast<std::size_t>(textures_count_) * static_cast<std::size_t>(shape.channels));
-  assert(bytes.size() ==
-         static_cast<std::size_t>(shape.rows) * static_cast<std::size_t>(shape.width) * encoding.size());
+  assert(bits == 8 || bits == 16);
+  assert(codes.size() == static_cast<std::size_t>(shape.rows) * static_cast<std::size_t>(shape.width) *
+                             encoding.size() * static_cast<std::size_t>(bits / 8));
   std::vector<cl_float2> factors;
   for (const TextureEncoding& e : encoding) factors.push_back({{e.scale > 0.0f ? 1.0f / e.scale : 0.0f, e.offset}});
   encoding_.upload(std::span<const cl_float2>(factors));
-  bytes_.reserve(bytes.size());
-  clear(shape);
+  codes_.reserve(codes.size());
+  clear(shape, bits);
   if (tiles.tileCount() > 0) {
     device::requireBytes(context_, textures_.buffer(), textureBytes(tiles, shape), "difference textures of a band");
     cl::Kernel kernel =
-        context_.kernel("difference_texture_encode.cl", "difference_texture_encode", channelDefines(shape));
+        context_.kernel("difference_texture_encode.cl", "difference_texture_encode", encodeDefines(shape, bits));
     kernel.setArg(0, tiles.positions());
     kernel.setArg(1, textures_.buffer());
     kernel.setArg(2, encoding_.buffer());
-    kernel.setArg(3, bytes_.buffer());
+    kernel.setArg(3, codes_.buffer());
     kernel.setArg(4, static_cast<cl_int>(shape.width));
     kernel.setArg(5, static_cast<cl_int>(shape.rows));
     context_.run(kernel, cl::NDRange(kTileSide, static_cast<std::size_t>(textures_count_), tiles.tileCount()),
                  cl::NDRange(context_.workGroupSize(kernel, kTileSide), 1, 1));
   }
-  const device::MappedBytes mapped = bytes_.mapForReading(bytes.size());
-  if (!bytes.empty()) std::memcpy(bytes.data(), mapped.bytes().data(), bytes.size());
+  const device::MappedBytes mapped = codes_.mapForReading(codes.size());
+  if (!codes.empty()) std::memcpy(codes.data(), mapped.bytes().data(), codes.size());
 }
 
 }  // namespace facezip::compress

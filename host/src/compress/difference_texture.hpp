@@ -1,10 +1,9 @@
-// difference_texture.hpp - the difference textures D_i of one band (FaceZip, Eq. 5), their range and their bytes.
+// difference_texture.hpp - the difference textures D_i of one band (FaceZip, Eq. 5), their range and their codes.
 //   D_i(p) = sum_k M_k(p) * sum_n coefficients[k][i][n] * Delta_n(p)
 // M_k here includes the gutter around the covered texels, so that bilinear and mip sampling never meet an empty texel.
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -40,15 +39,17 @@ class DifferenceTextures {
   /// entry texture * shape.channels + channel.
   std::vector<TextureRange> range(const DeviceTiles& tiles, const BandShape& shape);
 
-  /// Encodes what compute() made last into `bytes`, [texture][shape.rows][shape.width][channel]: the byte nearest to
-  /// the value, halves upwards, clamped to 0..255. Texels without a mask get the byte of 0. encoding  C x
-  /// shape.channels, as in range() bytes     exactly C * rows * width * channels
-  void encode(const DeviceTiles& tiles, const BandShape& shape, std::span<const TextureEncoding> encoding,
-              std::span<std::uint8_t> bytes);
+  /// Encodes what compute() made last into `codes`, [texture][shape.rows][shape.width][channel]: the code nearest to
+  /// the value, halves upwards, clamped to the codes there are. Texels without a mask get the code of 0.
+  /// encoding  C x shape.channels, as in range()
+  /// bits      of a code: 8 or 16, 16-bit codes in the byte order of the host
+  /// codes     exactly C * rows * width * channels * bits / 8 bytes
+  void encode(const DeviceTiles& tiles, const BandShape& shape, std::span<const TextureEncoding> encoding, int bits,
+              std::span<std::byte> codes);
 
  private:
   std::size_t textureBytes(const DeviceTiles& tiles, const BandShape& shape) const;
-  void clear(const BandShape& shape);
+  void clear(const BandShape& shape, int bits);
 
   device::DeviceContext& context_;
   device::KernelVariant variant_;
@@ -58,7 +59,7 @@ class DifferenceTextures {
   device::PooledBuffer textures_;
   device::PooledBuffer ranges_;
   device::PooledBuffer encoding_;
-  device::PooledBuffer bytes_;
+  device::PooledBuffer codes_;
 };
 
 }  // namespace facezip::compress

@@ -98,7 +98,7 @@ class UnpermutedPackage {
 struct Candidate {
   std::string method;
   const Package* package = nullptr;
-  std::shared_ptr<blend::WeightMaps> weights;
+  blend::WeightSets weights;
 };
 
 class Evaluator {
@@ -117,10 +117,10 @@ class Evaluator {
     evaluation_.expressions = package_.expressions();
     if (options_.no_permutation) {
       unpermuted_ = std::make_unique<UnpermutedPackage>(capture_, recorded_, options_, device_, progress_);
-      candidates_.push_back({"no_permutation", &unpermuted_->package(), nullptr});
+      candidates_.push_back({"no_permutation", &unpermuted_->package(), {}});
       clock_.book("compressing without permutation");
     }
-    candidates_.push_back({"package", &package_, nullptr});
+    candidates_.push_back({"package", &package_, {}});
     for (Candidate& candidate : candidates_) candidate.weights = blend::loadWeightMaps(*candidate.package, device_);
     face_ = readFace(capture_, recorded_.region);
     maps_ = openMaps(capture_, face_, recorded_.weight_scale, 0);
@@ -136,9 +136,9 @@ class Evaluator {
 
   int bandRows(const OpenMap& map) const {
     const BandCost cost = bandCost(bandShape(*map.samples, 0), 2 * (package_.differences() + 1), 0);
-    const PackageWeights& grid = package_.weights();
-    const std::uint64_t cells =
-        static_cast<std::uint64_t>(grid.tile_width) * static_cast<std::uint64_t>(grid.tile_height);
+    std::uint64_t cells = 0;
+    for (const PackageWeights& grid : package_.weightSets())
+      cells += static_cast<std::uint64_t>(grid.tile_width) * static_cast<std::uint64_t>(grid.tile_height);
     const auto weights = static_cast<std::uint64_t>(expressions()) * static_cast<std::uint64_t>(package_.differences());
     const std::uint64_t resident = cells * weights * candidates_.size();
     return planBandRows(cost, map.samples->shape().height, options_.memory_bytes, resident, device_.info());

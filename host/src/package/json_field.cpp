@@ -1,6 +1,7 @@
 #include "package/json_field.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 
@@ -44,6 +45,13 @@ int JsonField::integer(int least, int most) const {
                         : value_.get<std::int64_t>() >= least && value_.get<std::int64_t>() <= most;
   if (!fits) fail(expected, got());
   return value_.get<int>();
+}
+
+int JsonField::oneOf(std::span<const int> choices) const {
+  for (const int choice : choices) {
+    if (value_.is_number_integer() && value_ == choice) return choice;
+  }
+  fail(fmt::format("{} or {}", fmt::join(choices.first(choices.size() - 1), ", "), choices.back()), got());
 }
 
 double JsonField::number(double least, double most) const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,8 @@ class JsonField {
   std::string text() const;
   /// An integer in [least, most]; 3.0 is not one.
   int integer(int least, int most) const;
+  /// One of `choices`, which are two or more.
+  int oneOf(std::span<const int> choices) const;
   /// A finite number in [least, most].
   double number(double least, double most) const;
   const nlohmann::json& object() const;

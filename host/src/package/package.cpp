@@ -63,11 +63,15 @@ std::uint64_t Package::bytesInMemory() const {
   std::uint64_t bytes = 0;
   for (const PackageMap& map : maps()) {
     const std::uint64_t samples = map.frameBytes() / image::sampleBytes(map.sample_type);
-    bytes += map.frameBytes() + samples * static_cast<std::uint64_t>(differences());
+    const auto code_bytes = static_cast<std::uint64_t>(map.difference_bits / 8);
+    bytes += map.frameBytes() + samples * code_bytes * static_cast<std::uint64_t>(differences());
   }
-  const std::uint64_t cells =
-      static_cast<std::uint64_t>(weights().tile_width) * static_cast<std::uint64_t>(weights().tile_height);
-  return bytes + cells * expressions().size() * static_cast<std::uint64_t>(differences());
+  for (const PackageWeights& weights : weightSets()) {
+    const std::uint64_t cells =
+        static_cast<std::uint64_t>(weights.tile_width) * static_cast<std::uint64_t>(weights.tile_height);
+    bytes += cells * expressions().size() * static_cast<std::uint64_t>(differences());
+  }
+  return bytes;
 }
 
 }  // namespace facezip

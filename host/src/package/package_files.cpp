@@ -53,7 +53,8 @@ std::uint64_t checkImage(const fs::path& file, const image::ImageShape& shape) {
 image::ImageShape neutralShape(const PackageMap& map) { return {map.width, map.height, map.channels, map.sample_type}; }
 
 image::ImageShape differenceShape(const PackageMap& map) {
-  return {map.width, map.height, map.channels, image::SampleType::kUint8};
+  return {map.width, map.height, map.channels,
+          map.difference_bits == 16 ? image::SampleType::kUint16 : image::SampleType::kUint8};
 }
 
 image::ImageReader openImage(const fs::path& file, const image::ImageShape& shape) {
@@ -67,9 +68,11 @@ image::ImageReader openImage(const fs::path& file, const image::ImageShape& shap
 
 std::uint64_t checkImages(const PackageDescription& description, const fs::path& directory) {
   std::uint64_t bytes = 0;
-  for (std::size_t file = 0; file < description.weights.files.size(); ++file) {
-    bytes += checkImage(directory / description.weights.files[file],
-                        atlasShape(description.weights, description.differences, static_cast<int>(file)));
+  for (const PackageWeights& weights : description.weights) {
+    for (std::size_t file = 0; file < weights.files.size(); ++file) {
+      bytes += checkImage(directory / weights.files[file],
+                          atlasShape(weights, description.differences, static_cast<int>(file)));
+    }
   }
   for (const PackageMap& map : description.maps) {
     bytes += checkImage(directory / map.neutral_file, neutralShape(map));

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <set>
@@ -26,6 +28,17 @@ const char* sampleTypeText(SampleType type) {
   return "";
 }
 
+Document weightsJson(const PackageWeights& weights) {
+  return {{"files", weights.files},
+          {"columns", weights.columns},
+          {"rows", weights.rows},
+          {"tile_width", weights.tile_width},
+          {"tile_height", weights.tile_height},
+          {"border", weights.border},
+          {"scale", weights.scale},
+          {"offset", weights.offset}};
+}
+
 Document mapJson(const PackageMap& map) {
   Document differences = Document::array();
   for (const PackageDifference& difference : map.differences) {
@@ -37,9 +50,11 @@ Document mapJson(const PackageMap& map) {
           {"channels", map.channels},
           {"sample_type", sampleTypeText(map.sample_type)},
           {"colour_space", map.colour_space},
+          {"weights", map.weight_set},
           {"weight_scale", map.weight_scale},
           {"metric_weight", map.metric_weight},
           {"neutral", {{"file", map.neutral_file}}},
+          {"difference_bits", map.difference_bits},
           {"differences", differences}};
 }
 
@@ -121,23 +136,24 @@ PackageWeights parseWeights(const JsonField& field, int expressions, int differe
   return weights;
 }
 
-/// Zero must be a code: outside the face a difference is zero, and there the neutral must come back untouched.
-void requireExactZero(const JsonField& field, double scale, double offset) {
+/// Zero must be a code: outside the face a difference is zero, and there the neutral must come back untouched. Numbers
+/// of 17 digits come back from JSON as they were written, so no tolerance is needed.
+void requireExactZero(const JsonField& field, double scale, double offset, int largest_code) {
   if (scale == 0.0 && offset == 0.0) return;
   const double zero_code = std::round(-offset / scale);
-  if (scale > 0.0 && zero_code >= 0.0 && zero_code <= 255.0 && std::abs(offset + scale * zero_code) <= 1e-5 * scale)
-    return;
-  field.fail("-scale times an integer from 0 to 255, so that zero has a code",
+  if (scale > 0.0 && zero_code >= 0.0 && zero_code <= largest_code && offset == -(scale * zero_code)) return;
+  field.fail(fmt::format("-scale times an integer from 0 to {}, so that zero has a code", largest_code),
              fmt::format("offset {} at scale {}", offset, scale));
 }
 
-PackageDifference parseDifference(const JsonField& field, int channels) {
+PackageDifference parseDifference(const JsonField& field, int channels, int bits) {
+  const int largest_code = (1 << bits) - 1;
   PackageDifference difference;
   difference.file = fileInPackage(field["file"], ".png");
   difference.scale = parseNumbers(field["scale"], channels, 0, kLargestCoefficient);
-  difference.offset = parseNumbers(field["offset"], channels, -255 * kLargestCoefficient, 0);
+  difference.offset = parseNumbers(field["offset"], channels, -largest_code * kLargestCoefficient, 0);
   for (std::size_t c = 0; c < difference.scale.size(); ++c) {
-    requireExactZero(field["offset"], difference.scale[c], difference.offset[c]);
+    requireExactZero(field["offset"], difference.scale[c], difference.offset[c], largest_code);
   }
   return difference;
 }
@@ -156,16 +172,17 @@ std::string parseColourSpace(const JsonField& field) {
   return name;
 }
 
+/// Map and set must agree on the cells: the kernel that samples weights clamps to the set's grid.
 void requireSameGrid(const JsonField& field, const PackageMap& map, const PackageWeights& weights) {
   const int columns = weightCells(map.width, map.weight_scale);
   const int rows = weightCells(map.height, map.weight_scale);
   if (columns == weights.tile_width && rows == weights.tile_height) return;
-  field.fail(fmt::format("{} x {} texels to need {} x {} cells (weights.tile_width, tile_height)", map.width,
-                         map.height, weights.tile_width, weights.tile_height),
+  field.fail(fmt::format("{} x {} texels to need {} x {} cells (tile_width, tile_height of weights[{}])", map.width,
+                         map.height, weights.tile_width, weights.tile_height, map.weight_set),
              fmt::format("{} x {} at weight_scale {}", columns, rows, map.weight_scale));
 }
 
-PackageMap parseMap(const JsonField& field, const PackageWeights& weights, int differences) {
+PackageMap parseMap(const JsonField& field, const std::vector<PackageWeights>& weight_sets, int differences) {
   PackageMap map;
   map.name = fileSafeName(field["name"]);
   map.width = field["width"].integer(1, kMaxSide);
@@ -173,15 +190,27 @@ PackageMap parseMap(const JsonField& field, const PackageWeights& weights, int d
   map.channels = field["channels"].integer(1, 4);
   map.sample_type = parseSampleType(field["sample_type"]);
   map.colour_space = parseColourSpace(field["colour_space"]);
+  map.weight_set = field["weights"].integer(0, static_cast<int>(weight_sets.size()) - 1);
   map.weight_scale = field["weight_scale"].integer(1, kMaxSide);
   map.metric_weight = field["metric_weight"].number(0, kLargestCoefficient);
   map.neutral_file = fileInPackage(field["neutral"]["file"], map.sample_type == SampleType::kFloat32 ? ".exr" : ".png");
+  map.difference_bits = field["difference_bits"].oneOf(std::array{8, 16});
   const std::size_t count = static_cast<std::size_t>(differences);
   for (const JsonField& difference : field["differences"].elements(count, count)) {
-    map.differences.push_back(parseDifference(difference, map.channels));
+    map.differences.push_back(parseDifference(difference, map.channels, map.difference_bits));
   }
-  requireSameGrid(field, map, weights);
+  requireSameGrid(field, map, weight_sets[static_cast<std::size_t>(map.weight_set)]);
   return map;
+}
+
+/// A set that no map uses would cost memory in every reader and change no frame.
+void requireUsed(const std::vector<JsonField>& weight_sets, const std::vector<PackageMap>& maps) {
+  for (std::size_t set = 0; set < weight_sets.size(); ++set) {
+    const auto uses = [set](const PackageMap& map) { return static_cast<std::size_t>(map.weight_set) == set; };
+    if (std::none_of(maps.begin(), maps.end(), uses)) {
+      weight_sets[set].fail("weights that a map uses (maps[].weights)", "no map that does", "write the package again");
+    }
+  }
 }
 
 void requireKnownVersion(const JsonField& document) {
@@ -199,7 +228,8 @@ void requireKnownVersion(const JsonField& document) {
 }  // namespace
 
 std::string packageJson(const PackageDescription& description) {
-  const PackageWeights& weights = description.weights;
+  Document weight_sets = Document::array();
+  for (const PackageWeights& weights : description.weights) weight_sets.push_back(weightsJson(weights));
   Document maps = Document::array();
   for (const PackageMap& map : description.maps) maps.push_back(mapJson(map));
   try {
@@ -209,15 +239,7 @@ std::string packageJson(const PackageDescription& description) {
                                {"name", description.name},
                                {"expressions", description.expressions},
                                {"differences", description.differences},
-                               {"weights",
-                                {{"files", weights.files},
-                                 {"columns", weights.columns},
-                                 {"rows", weights.rows},
-                                 {"tile_width", weights.tile_width},
-                                 {"tile_height", weights.tile_height},
-                                 {"border", weights.border},
-                                 {"scale", weights.scale},
-                                 {"offset", weights.offset}}},
+                               {"weights", weight_sets},
                                {"maps", maps},
                                {"method", Document::parse(description.method_json)}};
     return document.dump(2) + "\n";
@@ -236,8 +258,11 @@ PackageDescription parsePackageJson(const std::string& text, const std::string& 
   description.name = document["name"].text();
   description.expressions = parseExpressions(document["expressions"]);
   description.differences = document["differences"].integer(1, kMaxDifferences);
-  description.weights =
-      parseWeights(document["weights"], static_cast<int>(description.expressions.size()), description.differences);
+  const std::vector<JsonField> weight_sets = document["weights"].elements(1, kMostMaps);
+  for (const JsonField& weights : weight_sets) {
+    description.weights.push_back(
+        parseWeights(weights, static_cast<int>(description.expressions.size()), description.differences));
+  }
   const std::vector<JsonField> maps = document["maps"].elements(1, kMostMaps);
   std::vector<JsonField> names;
   for (const JsonField& map : maps) {
@@ -245,6 +270,7 @@ PackageDescription parsePackageJson(const std::string& text, const std::string& 
     names.push_back(map["name"]);
   }
   requireUnique(names, "map");
+  requireUsed(weight_sets, description.maps);
   description.method_json = document["method"].object().dump();
   return description;
 }

@@ -8,7 +8,7 @@
 namespace facezip::package {
 
 inline constexpr char kDescriptionFile[] = "package.json";
-inline constexpr int kFormatVersion = 1;
+inline constexpr int kFormatVersion = 2;
 inline constexpr int kMaxDifferences = 8;    ///< C
 inline constexpr int kMaxSide = 65536;       ///< texels along a side of a map
 inline constexpr int kMaxAtlasSide = 16384;  ///< what every GPU of the last decade takes as a texture

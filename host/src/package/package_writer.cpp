@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
 
@@ -16,20 +17,28 @@ namespace facezip::package {
 namespace fs = std::filesystem;
 namespace {
 
-/// File names, atlas layout and generator of what the caller described.
-PackageDescription complete(PackageDescription description) {
-  description.generator = "facezip " FACEZIP_VERSION;
-  PackageWeights& weights = description.weights;
+/// File names and atlas layout of one set of weights. Its grid is that of the first map that uses it, which names the
+/// folder too where there are several sets: the set that all maps share belongs to none of them.
+void completeWeights(PackageDescription& description, int set) {
+  PackageWeights& weights = description.weights[static_cast<std::size_t>(set)];
+  const auto map = std::find_if(description.maps.begin(), description.maps.end(),
+                                [set](const PackageMap& m) { return m.weight_set == set; });
+  if (map == description.maps.end()) return;  // refused with the rest of the description
+  const std::string folder = description.weights.size() == 1 ? "" : map->name + "/";
   weights.files.clear();
   for (int file = 0; 4 * file < description.differences; ++file) {
-    weights.files.push_back(file == 0 ? "weights.png" : fmt::format("weights_{}.png", file));
+    weights.files.push_back(folder + (file == 0 ? "weights.png" : fmt::format("weights_{}.png", file)));
   }
-  if (!description.maps.empty() && description.maps.front().weight_scale > 0 && !description.expressions.empty()) {
-    const PackageMap& map = description.maps.front();
-    weights.tile_width = weightCells(map.width, map.weight_scale);
-    weights.tile_height = weightCells(map.height, map.weight_scale);
-    arrangeAtlas(weights, static_cast<int>(description.expressions.size()));
-  }
+  if (map->weight_scale < 1 || description.expressions.empty()) return;
+  weights.tile_width = weightCells(map->width, map->weight_scale);
+  weights.tile_height = weightCells(map->height, map->weight_scale);
+  arrangeAtlas(weights, static_cast<int>(description.expressions.size()));
+}
+
+/// File names, atlas layouts and generator of what the caller described.
+PackageDescription complete(PackageDescription description) {
+  description.generator = "facezip " FACEZIP_VERSION;
+  for (int set = 0; set < static_cast<int>(description.weights.size()); ++set) completeWeights(description, set);
   for (PackageMap& map : description.maps) {
     map.neutral_file = map.name + (map.sample_type == SampleType::kFloat32 ? "/neutral.exr" : "/neutral.png");
     for (std::size_t i = 0; i < map.differences.size(); ++i) {
@@ -47,7 +56,7 @@ struct PackageWriter::Images {
     std::vector<image::ImageWriter> differences;
   };
   std::vector<Map> maps;
-  bool weights_written = false;
+  std::vector<char> weights_written;  // per set; not vector<bool>, whose elements threads cannot set at once
 };
 
 // What is written is what parsePackageJson reads back: a package that could not be opened is refused here.
@@ -55,6 +64,7 @@ PackageWriter::PackageWriter(PackageDescription description, fs::path directory)
     : description_(parsePackageJson(packageJson(complete(std::move(description))), kDescriptionFile)),
       directory_(std::move(directory)),
       images_(std::make_unique<Images>()) {
+  images_->weights_written.resize(description_.weights.size());
   for (const PackageMap& map : description_.maps) {
     io::createDirectories(directory_ / map.name);
     std::vector<image::ImageWriter> differences;
@@ -77,14 +87,15 @@ void PackageWriter::writeDifferenceRows(int map, int difference, std::span<const
                                                                                                            row_count);
 }
 
-void PackageWriter::writeWeights(std::span<const std::byte> codes) {
-  assert(!images_->weights_written);
-  writeWeightAtlas(description_, directory_, codes);
-  images_->weights_written = true;
+void PackageWriter::writeWeights(int set, std::span<const std::byte> codes) {
+  char& written = images_->weights_written[static_cast<std::size_t>(set)];
+  assert(!written);
+  writeWeightAtlas(description_, set, directory_, codes);
+  written = true;
 }
 
 void PackageWriter::finish() {
-  assert(images_->weights_written);
+  assert(std::ranges::all_of(images_->weights_written, [](char written) { return written != 0; }));
   for (Images::Map& map : images_->maps) {
     map.neutral.close();
     for (image::ImageWriter& difference : map.differences) difference.close();

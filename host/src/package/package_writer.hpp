@@ -14,11 +14,11 @@ namespace facezip::package {
 /// io::StagedDirectory's, so that a reader sees the whole package or none; committing it is the caller's.
 class PackageWriter {
  public:
-  /// Creates every image. From the caller come: name, expressions, differences (C), weights.scale/offset, method_json
-  /// and of each map name, width, height, channels, sample_type, colour_space, weight_scale, metric_weight and C
-  /// differences with scale/offset. File names, the atlas layout and the generator are filled in here. Throws
-  /// InputError for a description that Package::open would refuse, and when the weight atlas would pass 16384 cells
-  /// along a side; OutputError.
+  /// Creates every image. From the caller come: name, expressions, differences (C), scale/offset of each set of
+  /// weights, method_json and of each map name, width, height, channels, sample_type, colour_space, weight_set,
+  /// weight_scale, metric_weight, difference_bits and C differences with scale/offset. File names, atlas layouts and
+  /// the generator are filled in here. Throws InputError for a description that Package::open would refuse, and when a
+  /// weight atlas would pass 16384 cells along a side; OutputError.
   PackageWriter(PackageDescription description, std::filesystem::path directory);
   ~PackageWriter();
 
@@ -28,12 +28,13 @@ class PackageWriter {
   /// Writes the next rows of a map's neutral: interleaved samples of the map's type, no padding. Throws OutputError.
   void writeNeutralRows(int map, std::span<const std::byte> rows, int row_count);
 
-  /// Writes the next rows of difference texture `difference`: 8-bit codes, channels interleaved. Throws OutputError.
+  /// Writes the next rows of difference texture `difference`: codes of the map's difference_bits, 16-bit ones in the
+  /// byte order of the host, channels interleaved, no padding. Throws OutputError.
   void writeDifferenceRows(int map, int difference, std::span<const std::byte> codes, int row_count);
 
-  /// Writes all weight maps, once.
-  /// codes  [N][tile_height][tile_width][C]
-  void writeWeights(std::span<const std::byte> codes);
+  /// Writes all weight maps of one set, once. Sets may be written by several threads at once.
+  /// codes  [N][tile_height][tile_width][C], of the set's own tile size
+  void writeWeights(int set, std::span<const std::byte> codes);
 
   /// Closes the images and writes package.json. All rows and weights must have been written. Throws OutputError.
   void finish();

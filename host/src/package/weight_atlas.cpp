@@ -53,9 +53,9 @@ image::ImageShape atlasShape(const PackageWeights& weights, int differences, int
           std::min(differences - kFileChannels * file, kFileChannels), image::SampleType::kUint8};
 }
 
-void writeWeightAtlas(const PackageDescription& description, const fs::path& directory,
+void writeWeightAtlas(const PackageDescription& description, int set, const fs::path& directory,
                       std::span<const std::byte> codes) {
-  const PackageWeights& weights = description.weights;
+  const PackageWeights& weights = description.weights[size(set)];
   const int expressions = static_cast<int>(description.expressions.size());
   const int channels = description.differences;
   const std::size_t row_bytes = size(weights.tile_width) * size(channels);
@@ -82,8 +82,9 @@ void writeWeightAtlas(const PackageDescription& description, const fs::path& dir
   }
 }
 
-void readWeightAtlas(const PackageDescription& description, const fs::path& directory, const WeightRowVisitor& visit) {
-  const PackageWeights& weights = description.weights;
+void readWeightAtlas(const PackageDescription& description, int set, const fs::path& directory,
+                     const WeightRowVisitor& visit) {
+  const PackageWeights& weights = description.weights[size(set)];
   const int expressions = static_cast<int>(description.expressions.size());
   for (int file = 0; file < static_cast<int>(weights.files.size()); ++file) {
     image::ImageReader reader(directory / weights.files[size(file)]);

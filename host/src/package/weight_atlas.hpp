@@ -18,9 +18,9 @@ void arrangeAtlas(PackageWeights& weights, int expressions);
 /// Size of atlas file `file`, which holds weight channels 4 file up to 4 file + 3.
 image::ImageShape atlasShape(const PackageWeights& weights, int differences, int file);
 
-/// Writes all atlas files, a row of tiles at a time.
+/// Writes all atlas files of weights[set], a row of tiles at a time.
 /// codes  [N][tile_height][tile_width][C]
-void writeWeightAtlas(const PackageDescription& description, const std::filesystem::path& directory,
+void writeWeightAtlas(const PackageDescription& description, int set, const std::filesystem::path& directory,
                       std::span<const std::byte> codes);
 
 /// Receives one row of one weight map: `row` holds tile_width cells of `row_channels` codes, weight channels from
@@ -28,8 +28,8 @@ void writeWeightAtlas(const PackageDescription& description, const std::filesyst
 using WeightRowVisitor = std::function<void(int expression, int cell_row, int first_channel, int row_channels,
                                             std::span<const std::byte> row)>;
 
-/// Reads all atlas files, a row of tiles at a time. Throws InputError for a damaged file.
-void readWeightAtlas(const PackageDescription& description, const std::filesystem::path& directory,
+/// Reads all atlas files of weights[set], a row of tiles at a time. Throws InputError for a damaged file.
+void readWeightAtlas(const PackageDescription& description, int set, const std::filesystem::path& directory,
                      const WeightRowVisitor& visit);
 
 }  // namespace facezip::package

@@ -2,6 +2,8 @@
 
 #include "compress/difference.hpp"
 #include "compress/difference_texture.hpp"
+#include "compress/texture_encoder.hpp"
+#include "compress/texture_range.hpp"
 #include "roof.hpp"
 #include "synthetic_capture.hpp"
 
@@ -67,7 +69,8 @@ void differenceTexture(benchmark::State& state) {
 void differenceTextureRange(benchmark::State& state) {
   TextureBench bench(state);
   bench.textures.compute(bench.tiles, bench.differences, bench.shape);
-  measure(state, [&] { bench.textures.range(bench.tiles, bench.shape); });
+  compress::TextureRangeFinder finder(bench.context, kTextures);
+  measure(state, [&] { finder.find(bench.tiles, bench.shape, bench.textures.textures(), 0, bench.tiles.tileCount()); });
   setBandwidthCounters(state, bench.maskBytes() + bench.textureBytes());
 }
 
@@ -77,7 +80,9 @@ void differenceTextureEncode(benchmark::State& state) {
   const std::vector<compress::TextureEncoding> encoding(static_cast<std::size_t>(kTextures * bench.shape.channels),
                                                         {1.0f, -128.0f});
   std::vector<std::byte> codes(static_cast<std::size_t>(bench.texels()) * encoding.size());
-  measure(state, [&] { bench.textures.encode(bench.tiles, bench.shape, encoding, /* bits= */ 8, codes); });
+  compress::TextureEncoder encoder(bench.context, kTextures);
+  measure(state,
+          [&] { encoder.encode(bench.tiles, bench.shape, bench.textures.textures(), encoding, /* bits= */ 8, codes); });
   setBandwidthCounters(state, bench.textureBytes() + static_cast<double>(codes.size()));
 }
 

@@ -24,8 +24,11 @@ void addMapsOption(CLI::App& command, std::vector<std::string>& maps, const std:
 
 void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
   CompressOptions& options = arguments.options;
-  command.add_option("--method", arguments.method, "paper: the FaceZip method; no-permutation: its ablation")
-      ->check(CLI::IsMember({"paper", "no-permutation"}))
+  command
+      .add_option("--method", arguments.method,
+                  "refined; closed-loop: the paper's weights, textures fitted to them; paper: the FaceZip method; "
+                  "no-permutation: its ablation")
+      ->check(CLI::IsMember({"refined", "closed-loop", "paper", "no-permutation"}))
       ->capture_default_str();
   command
       .add_option("--differences", options.differences, "Difference textures of a map, and weights of a cell: 1 to 8")
@@ -33,6 +36,7 @@ void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
   command
       .add_option("--weight-scale", options.weight_scale, "Texels of the largest map per weight texel, along each axis")
       ->capture_default_str();
+  command.add_flag("--weights-per-map", options.weights_per_map, "Give every map weights of its own");
   CLI::Option* radius =
       command
           .add_option("--mask-radius", arguments.mask_radius,
@@ -60,10 +64,20 @@ void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
   addMemoryOption(command, arguments.memory);
 }
 
+namespace {
+
+CompressOptions::Method parseMethod(const std::string& name) {
+  if (name == "closed-loop") return CompressOptions::Method::kClosedLoop;
+  if (name == "paper") return CompressOptions::Method::kPaper;
+  if (name == "no-permutation") return CompressOptions::Method::kNoPermutation;
+  return CompressOptions::Method::kRefined;
+}
+
+}  // namespace
+
 CompressOptions parseCompressOptions(const CompressArguments& arguments) {
   CompressOptions options = arguments.options;
-  options.method =
-      arguments.method == "paper" ? CompressOptions::Method::kPaper : CompressOptions::Method::kNoPermutation;
+  options.method = parseMethod(arguments.method);
   try {
     options.mask_radius = geometry::parseLength(arguments.mask_radius);
   } catch (const InputError& error) {

@@ -25,7 +25,9 @@ struct CompressOptions {
     kNoPermutation,  ///< clusters in the order of the clustering; the paper's ablation, for comparison only
   };
   Method method = Method::kPaper;
-  int differences = 4;   ///< C, difference textures of every map and weight channels of every expression; 1 to 8
+  int differences = 4;  ///< C, difference textures of every map and weight channels of every expression; 1 to 8
+  /// A set of weights for every map, instead of one that all share.
+  bool weights_per_map = false;
   int weight_scale = 8;  ///< texels of the largest map per weight cell, per axis; 1 to 64
   /// Poisson-disk radius of the mask samples; bare numbers are in the mesh's unit. The paper's 3 cm.
   geometry::Length mask_radius{3.0, geometry::LengthUnit::kCentimetre};
@@ -57,6 +59,9 @@ struct CompressReport {
   double permutation_cost_median = 0.0;          ///< median of the restarts' final costs
   std::vector<double> restart_costs;             ///< final cost of every restart
   std::vector<std::vector<double>> convergence;  ///< cost after each sweep, per restart
+  /// Squared error after each sweep of the refinement, from the start on, texel and metric weights in it; of the last
+  /// set of weights. Empty where nothing was refined.
+  std::vector<double> refinement_errors;
   int band_rows = 0;
   std::string decoded;  ///< how later passes read the textures: "scratch file" or "decoded again"
   std::vector<std::pair<std::string, double>> seconds;  ///< wall time of each stage, in order

@@ -4,6 +4,10 @@
 
 #include <algorithm>
 
+#include "compress/map_bands.hpp"
+#include "compress/refinement.hpp"
+#include "compress/weight_system.hpp"
+
 namespace facezip::compress {
 namespace {
 
@@ -14,6 +18,23 @@ constexpr std::uint64_t kProcessBytes = 256 * kMiB;
 /// Bands beyond this gain nothing: launches are already cheap beside the work, and caches grow cold.
 constexpr std::uint64_t kUsefulBandBytes = 96 * kMiB;
 constexpr int kTypicalMasksPerTile = 16;
+
+/// What a window of the refinement keeps of one map, per row of its image.
+BandCost windowCost(const OpenMap& map, const WeightSpace& space) {
+  const BandShape shape = bandShape(*map.samples, 0);
+  const auto tiles = static_cast<std::uint64_t>((shape.width + kTileSide - 1) / kTileSide);
+  const std::uint64_t samples = tiles * kTileSide * static_cast<std::uint64_t>(shape.channels) *
+                                (static_cast<std::uint64_t>(shape.expressions) + 1) *
+                                static_cast<std::uint64_t>(image::sampleBytes(shape.sample_type));
+  const std::uint64_t partial = tiles * systemBytesOfTile(space, map.weight_scale) / kTileSide;
+  BandCost cost = bandCost(shape, space.textures, 1);
+  // The samples are held once more while a window slides. The grid: equations, weights, start, and copies on the host.
+  cost.per_row += samples + partial +
+                  static_cast<std::uint64_t>(space.columns) * sizeof(float) *
+                      (space.systemEntries() + 4 * space.cellFloats()) / static_cast<std::uint64_t>(map.weight_scale);
+  cost.largest_buffer_per_row = std::max(cost.largest_buffer_per_row, partial);
+  return cost;
+}
 
 std::string mebibytes(std::uint64_t bytes) { return fmt::format("{} MiB", (bytes + kMiB - 1) / kMiB); }
 
@@ -58,6 +79,27 @@ int planBandRows(const BandCost& cost, int height, std::uint64_t memory_bytes, s
   const std::uint64_t rows = std::min({within_memory, within_device, kUsefulBandBytes / cost.per_row});
   const auto needed = static_cast<std::uint64_t>((height + kTileSide - 1) / kTileSide * kTileSide);
   return static_cast<int>(std::clamp<std::uint64_t>(rows / kTileSide * kTileSide, kTileSide, needed));
+}
+
+int planWindowRows(std::span<OpenMap* const> maps, const WeightSpace& space, std::uint64_t memory_bytes,
+                   std::uint64_t resident_bytes, const DeviceInfo& device) {
+  BandCost cost;  // per row of the finest map
+  const OpenMap* finest = maps.front();
+  for (const OpenMap* map : maps) {
+    if (map->weight_scale > finest->weight_scale) finest = map;
+  }
+  const auto finest_scale = static_cast<std::uint64_t>(finest->weight_scale);
+  for (const OpenMap* map : maps) {
+    const BandCost one = windowCost(*map, space);
+    const auto scale = static_cast<std::uint64_t>(map->weight_scale);
+    cost.per_row += one.per_row * scale / finest_scale;
+    cost.largest_buffer_per_row =
+        std::max(cost.largest_buffer_per_row, one.largest_buffer_per_row * scale / finest_scale);
+  }
+  const std::uint64_t halo = 2 * static_cast<std::uint64_t>(windowHalo(finest->weight_scale)) * cost.per_row;
+  const int rows = planBandRows(cost, finest->samples->shape().height, memory_bytes, resident_bytes + halo, device);
+  const int step = windowRowStep(maps);
+  return std::max(step, rows / finest->weight_scale / step * step);
 }
 
 }  // namespace facezip::compress

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
+#include "compress/map_set.hpp"
 #include "compress/tile_band.hpp"
+#include "compress/weight_window.hpp"
 #include "facezip/device.hpp"
 
 namespace facezip::compress {
@@ -25,5 +28,10 @@ BandCost bandCost(const BandShape& shape, int textures, int mask_count);
 /// Throws InputError if `memory_bytes` does not hold a band of 16 rows, DeviceError if the device does not.
 int planBandRows(const BandCost& cost, int height, std::uint64_t memory_bytes, std::uint64_t resident_bytes,
                  const DeviceInfo& device);
+
+/// Rows of cells that a window of the refinement frees: a multiple of windowRowStep(maps), so that the windows of all
+/// maps together stay within the memory. Arguments and errors as planBandRows() has them.
+int planWindowRows(std::span<OpenMap* const> maps, const WeightSpace& space, std::uint64_t memory_bytes,
+                   std::uint64_t resident_bytes, const DeviceInfo& device);
 
 }  // namespace facezip::compress

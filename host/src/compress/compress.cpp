@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <sys/resource.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cassert>
@@ -11,21 +10,23 @@
 #include <memory>
 
 #include "compress/band_plan.hpp"
-#include "compress/difference_texture.hpp"
+#include "compress/code_bits.hpp"
 #include "compress/face.hpp"
 #include "compress/gram.hpp"
 #include "compress/kmeans.hpp"
 #include "compress/map_bands.hpp"
 #include "compress/map_set.hpp"
 #include "compress/method_record.hpp"
+#include "compress/package_output.hpp"
 #include "compress/permutation_search.hpp"
+#include "compress/refinement.hpp"
 #include "compress/seam_cost.hpp"
 #include "compress/stage_clock.hpp"
 #include "compress/texture_assignment.hpp"
+#include "compress/texture_range.hpp"
+#include "compress/texture_source.hpp"
 #include "compress/weight_map.hpp"
-#include "facezip/package.hpp"
 #include "io/staged_directory.hpp"
-#include "package/package_writer.hpp"
 #include "raster/texel_masks.hpp"
 #include "raster/weight_grid.hpp"
 
@@ -34,7 +35,22 @@ namespace {
 using namespace compress;
 namespace fs = std::filesystem;
 
-constexpr int kCodeBits = 8;  // of a texel of a difference texture
+using Method = CompressOptions::Method;
+
+/// Share of the weights at either end that may be clamped when they become bytes.
+constexpr double kClippedWeights = 2e-4;
+
+/// Maps that share weights, from their Gram matrices to what a package holds of them.
+struct WeightGroup {
+  std::vector<OpenMap*> maps;
+  GramMatrices grams;
+  TextureCoefficients coefficients;
+  EncodedWeights start;                           ///< the paper's weights (Eq. 6)
+  EncodedWeights weights;                         ///< that are written
+  std::vector<std::vector<TextureRange>> ranges;  ///< of every map's difference textures
+  std::vector<double> errors;                     ///< of every map: squared error before rounding, (1/255)^2
+  double start_error = 0.0;                       ///< of all maps, with the paper's weights, times their metric weights
+};
 
 void requireSaneOptions(const CompressOptions& options) {
   const auto require = [](bool holds, const char* option, const char* expected, const std::string& got) {
@@ -52,14 +68,6 @@ void requireSaneOptions(const CompressOptions& options) {
   require(!options.masks || *options.masks >= 1, "--masks", "at least 1", fmt::format("{}", options.masks.value_or(0)));
   require(!options.gutter || *options.gutter >= 0, "--gutter", "0 or more",
           fmt::format("{}", options.gutter.value_or(0)));
-}
-
-void widen(std::vector<TextureRange>& whole, const std::vector<TextureRange>& part) {
-  if (whole.empty()) whole = part;
-  for (std::size_t i = 0; i < whole.size(); ++i) {
-    whole[i].min = std::min(whole[i].min, part[i].min);
-    whole[i].max = std::max(whole[i].max, part[i].max);
-  }
 }
 
 std::uint64_t peakMemoryBytes() {
@@ -84,9 +92,9 @@ class Compression {
   CompressReport run() {
     readGeometry();
     openTextures();
-    const GramMatrices grams = accumulateGrams();
-    assign(grams);
-    writePackage();
+    accumulateGrams();
+    for (WeightGroup& group : groups_) assign(group);
+    solveAndWrite();
     report_.package_disk_bytes = diskBytes();
     staged_.commit();
     clock_.book("publishing");
@@ -128,22 +136,30 @@ class Compression {
     grid_ = raster::makeWeightGrid(*texel_masks_, reference, options_.weight_scale);
     clock_.book("weight grid");
     planBands();
+    groups_.resize(options_.weights_per_map ? maps_.maps.size() : 1);
+    for (std::size_t m = 0; m < maps_.maps.size(); ++m) {
+      groups_[options_.weights_per_map ? m : 0].maps.push_back(&maps_.maps[m]);
+    }
     if (expressions() <= options_.differences) {
       progress_.note(fmt::format("{} expression{}: each gets a difference texture of its own", expressions(),
                                  expressions() == 1 ? "" : "s"));
     }
   }
 
-  void planBands() {
+  /// What stays from pass to pass: weights as codes and as halves, and the masks of the cells.
+  std::uint64_t residentBytes() const {
     const std::uint64_t cells = grid_.cells.cells();
-    const std::uint64_t resident = cells * static_cast<std::uint64_t>(expressions() * options_.differences) +
-                                   grid_.cells.mask_index.size() * (sizeof(int) + sizeof(float)) + cells * sizeof(int);
+    return cells * static_cast<std::uint64_t>(expressions() * options_.differences) * 4 +
+           grid_.cells.mask_index.size() * (sizeof(int) + sizeof(float)) + cells * sizeof(int);
+  }
+
+  void planBands() {
     int rows = 0;
     std::uint64_t decoded = 0;
     for (const OpenMap& map : maps_.maps) {
       const BandCost cost = bandCost(bandShape(*map.samples, 0), options_.differences, report_.masks);
       const int planned =
-          planBandRows(cost, map.samples->shape().height, options_.memory_bytes, resident, context_.info());
+          planBandRows(cost, map.samples->shape().height, options_.memory_bytes, residentBytes(), context_.info());
       rows = rows == 0 ? planned : std::min(rows, planned);
       decoded += map.samples->decodedBytes();
     }
@@ -166,10 +182,16 @@ class Compression {
     for (OpenMap& map : maps_.maps) map.samples->keepDecoded(directory);
   }
 
-  void forEachBand(OpenMap& map, const std::string& stage, const std::function<void(const MapBand&)>& visit) {
-    const auto make_tiles = [&](int begin, int end) { return texel_masks_->tiles(*map.raster, begin, end); };
+  void forEachBand(OpenMap& map, const std::string& stage, const MakeTiles& make_tiles,
+                   const std::function<void(const MapBand&)>& visit) {
     forEachMapBand(*map.samples, report_.band_rows, buffers_, make_tiles,
                    fmt::format("{}: {}", stage, map.source->name), progress_, visit);
+  }
+
+  void forEachBand(OpenMap& map, const std::string& stage, const TextureSource& source,
+                   const std::function<void(const MapBand&)>& visit) {
+    forEachBand(
+        map, stage, [&](int begin, int end) { return source.tiles(map, begin, end); }, visit);
   }
 
   GramSlots gramSlots() const {
@@ -188,44 +210,56 @@ class Compression {
   }
 
   // Pass 1: all that the search needs of the texels (Eq. 2 to 4).
-  GramMatrices accumulateGrams() {
-    GramAccumulator accumulator(context_, gramSlots(), expressions());
+  void accumulateGrams() {
+    const GramSlots slots = gramSlots();
     clock_.book("overlaps");
-    for (OpenMap& map : maps_.maps) {
-      std::uint64_t covered = 0;
-      forEachBand(map, "Gram matrices", [&](const MapBand& band) {
-        accumulator.add(band.tiles, band.differences, band.shape, map.source->metric_weight);
-        covered += static_cast<std::uint64_t>(
-            std::count(band.masks.texel_weights.begin(), band.masks.texel_weights.end(), 1.0f));
-      });
-      if (&map == &maps_.maps.front()) report_.covered_texels = covered;
+    for (WeightGroup& group : groups_) {
+      GramAccumulator accumulator(context_, slots, expressions());
+      for (OpenMap* map : group.maps) {
+        std::uint64_t covered = 0;
+        const auto make_tiles = [&](int begin, int end) { return texel_masks_->tiles(*map->raster, begin, end); };
+        forEachBand(*map, "Gram matrices", make_tiles, [&](const MapBand& band) {
+          accumulator.add(band.tiles, band.differences, band.shape, map->source->metric_weight);
+          covered +=
+              static_cast<std::uint64_t>(std::count_if(band.masks.texel_weights.begin(), band.masks.texel_weights.end(),
+                                                       [](float weight) { return weight > 0.0f; }));
+        });
+        if (map == &maps_.maps.front()) report_.covered_texels = covered;
+      }
+      group.grams = accumulator.finish();
     }
-    GramMatrices grams = accumulator.finish();
-    report_.overlapping_pairs = static_cast<int>(grams.slots.pairs.size());
+    report_.overlapping_pairs = static_cast<int>(slots.pairs.size());
     clock_.book("Gram matrices");
-    return grams;
   }
 
-  // Clusters of every mask and their place in the textures: from here on no texel is touched.
-  void assign(const GramMatrices& grams) {
+  // Clusters of every mask and their place in the textures, and the weights that follow (Eq. 6). Touches no texel.
+  void assign(WeightGroup& group) {
     progress_.stage("clustering", 0);
     KmeansOptions kmeans;
     kmeans.clusters = options_.differences;
     kmeans.restarts = options_.cluster_restarts;
     kmeans.seed = options_.seed;
-    const Clustering clustering = clusterFragments(context_, grams, kmeans);
+    const Clustering clustering = clusterFragments(context_, group.grams, kmeans);
     clock_.book("clustering");
     progress_.checkCancelled();
     progress_.stage("permutation", 0);
-    const SeamTables tables = computeSeamTables(context_, grams, clustering);
+    const SeamTables tables = computeSeamTables(context_, group.grams, clustering);
     clock_.book("seam costs");
     const Permutation permutation = choosePermutation(tables);
     report_.permutation_cost = permutation.cost;
-    coefficients_ = {report_.masks, options_.differences, expressions(),
-                     differenceCoefficients(clustering, permutation)};
-    texture_of_ = textureOfExpression(clustering, permutation);
+    group.coefficients = {report_.masks, options_.differences, expressions(),
+                          differenceCoefficients(clustering, permutation)};
     clock_.book("permutation");
     progress_.checkCancelled();
+    progress_.stage("weight maps", 0);
+    const std::vector<int> texture_of = textureOfExpression(clustering, permutation);
+    WeightMapper mapper(context_, texture_of, report_.masks, expressions(), options_.differences);
+    const std::size_t cells = grid_.cells.cells();
+    group.start.scale.assign(static_cast<std::size_t>(options_.differences), 1.0 / 255.0);
+    group.start.offset.assign(static_cast<std::size_t>(options_.differences), 0.0);
+    group.start.codes.resize(mapper.outputBytes(cells));
+    mapper.fill(grid_.cells, 0, cells, group.start.codes);
+    clock_.book("weight maps");
   }
 
   Permutation choosePermutation(const SeamTables& tables) {
@@ -240,103 +274,141 @@ class Compression {
     return found.best;
   }
 
-  // Pass 2: how far the difference textures reach, since 8 bits must hold them.
-  std::vector<TextureEncoding> findEncoding(OpenMap& map, DifferenceTextures& textures) {
-    std::vector<TextureRange> range;
-    forEachBand(map, "range of the differences", [&](const MapBand& band) {
-      if (band.masks.tiles.empty()) return;
-      textures.compute(band.tiles, band.differences, band.shape);
-      widen(range, textures.range(band.tiles, band.shape));
-    });
-    const auto count = static_cast<std::size_t>(options_.differences * map.samples->shape().channels);
-    std::vector<TextureEncoding> encoding(count, TextureEncoding{0.0f, 0.0f});
-    std::transform(range.begin(), range.end(), encoding.begin(),
-                   [](const TextureRange& reach) { return encodingFor(reach, kCodeBits); });
-    return encoding;
-  }
-
-  PackageMap describeMap(const OpenMap& map, const std::vector<TextureEncoding>& encoding) const {
-    const image::ImageShape& shape = map.samples->shape();
-    PackageMap described;
-    described.name = map.source->name;
-    described.width = shape.width;
-    described.height = shape.height;
-    described.channels = shape.channels;
-    described.sample_type = shape.type;
-    described.colour_space = map.source->colour_space;
-    described.weight_scale = map.weight_scale;
-    described.metric_weight = map.source->metric_weight;
-    described.difference_bits = kCodeBits;
-    for (int i = 0; i < options_.differences; ++i) {
-      PackageDifference difference;
-      for (int c = 0; c < shape.channels; ++c) {
-        const TextureEncoding& e = encoding[static_cast<std::size_t>(i * shape.channels + c)];
-        difference.scale.push_back(e.scale);
-        difference.offset.push_back(e.offset);
-      }
-      described.differences.push_back(std::move(difference));
-    }
-    return described;
-  }
-
-  // Pass 3: difference textures (Eq. 5) as codes, beside the neutral as it is.
-  void writeMap(package::PackageWriter& writer, int index, DifferenceTextures& textures,
-                const std::vector<TextureEncoding>& encoding) {
-    OpenMap& map = maps_.maps[static_cast<std::size_t>(index)];
-    std::vector<std::byte> codes;
-    forEachBand(map, "writing", [&](const MapBand& band) {
-      const int rows = band.end - band.begin;
-      const std::size_t bytes = static_cast<std::size_t>(rows) *
-                                static_cast<std::size_t>(band.shape.width * band.shape.channels) * (kCodeBits / 8);
-      codes.resize(bytes * static_cast<std::size_t>(options_.differences));
-      textures.compute(band.tiles, band.differences, band.shape);
-      textures.encode(band.tiles, band.shape, encoding, kCodeBits, codes);
-      const std::size_t neutral_bytes = static_cast<std::size_t>(rows) * map.samples->shape().rowBytes();
-      tbb::parallel_for(-1, options_.differences, [&](int i) {
-        if (i < 0) {
-          writer.writeNeutralRows(index, band.samples.first(neutral_bytes), rows);
-        } else {
-          writer.writeDifferenceRows(index, i, std::span(codes).subspan(static_cast<std::size_t>(i) * bytes, bytes),
-                                     rows);
-        }
+  // Pass 2 of the paper's method: how far the difference textures reach, since their codes must hold them.
+  void solvePaper(WeightGroup& group) {
+    ClusterTextures source(context_, *texel_masks_, group.coefficients);
+    TextureRangeFinder finder(context_, options_.differences);
+    group.weights = group.start;
+    group.ranges.assign(group.maps.size(), {});
+    for (std::size_t m = 0; m < group.maps.size(); ++m) {
+      OpenMap& map = *group.maps[m];
+      forEachBand(map, "range of the differences", source, [&](const MapBand& band) {
+        const cl::Buffer& textures = source.compute(map, band);
+        widen(group.ranges[m], finder.find(band.tiles, band.shape, textures, 0, band.tiles.tileCount()));
       });
-    });
-  }
-
-  // Weight maps (Eq. 6) of all expressions, on the grid that all maps share.
-  void writeWeights(package::PackageWriter& writer) {
-    progress_.stage("weight maps", 0);
-    WeightMapper mapper(context_, texture_of_, report_.masks, expressions(), options_.differences);
-    const std::size_t cells = grid_.cells.cells();
-    std::vector<std::uint8_t> codes(mapper.outputBytes(cells));
-    mapper.fill(grid_.cells, 0, cells, codes);
-    writer.writeWeights(0, std::as_bytes(std::span(codes)));
-    clock_.book("weight maps");
-  }
-
-  void writePackage() {
-    DifferenceTextures textures(context_, coefficients_);
-    PackageDescription description;
-    description.name = capture_.name;
-    description.expressions = capture_.expressions;
-    description.differences = options_.differences;
-    PackageWeights& weights = description.weights.emplace_back();  // the set that all maps share
-    weights.scale.assign(static_cast<std::size_t>(options_.differences), 1.0 / 255.0);
-    weights.offset.assign(static_cast<std::size_t>(options_.differences), 0.0);
-    description.method_json = methodJson(options_, report_, face_.region_description);
-    std::vector<std::vector<TextureEncoding>> encodings;
-    for (OpenMap& map : maps_.maps) {
-      encodings.push_back(findEncoding(map, textures));
-      description.maps.push_back(describeMap(map, encodings.back()));
     }
     clock_.book("range of the differences");
-    package::PackageWriter writer(std::move(description), staged_.path());
-    writeWeights(writer);
-    for (int m = 0; m < static_cast<int>(maps_.maps.size()); ++m) {
-      writeMap(writer, m, textures, encodings[static_cast<std::size_t>(m)]);
+  }
+
+  WeightSpace weightSpace() const { return {grid_.width, grid_.height, options_.differences, expressions()}; }
+
+  // Pass 2 of the other methods: weights and difference textures fitted in turn.
+  void solveFitted(WeightGroup& group, int most_sweeps) {
+    RefinementOptions refinement;
+    refinement.most_sweeps = most_sweeps;
+    RefinementProblem problem{weightSpace(), group.start, group.maps, {}, cellEnergy(group), 0};
+    problem.make_tiles = [](const OpenMap& map, int begin, int end) {
+      return raster::activeTiles(*map.raster, begin, end);
+    };
+    problem.window_rows =
+        planWindowRows(group.maps, problem.space, options_.memory_bytes, residentBytes(), context_.info());
+    Refinement refined = refine(context_, problem, refinement, progress_);
+    group.ranges = std::move(refined.ranges);
+    group.errors = std::move(refined.end_errors);
+    group.start_error = 0.0;
+    for (std::size_t m = 0; m < group.maps.size(); ++m) {
+      group.start_error += group.maps[m]->source->metric_weight * refined.start_errors[m];
     }
-    writer.finish();
+    if (most_sweeps > 0) {
+      report_.refinement_errors = std::move(refined.errors);
+      group.weights = refined.weights.encode(grid_.covered, kClippedWeights);
+    } else {
+      group.weights = group.start;
+    }
+    clock_.book("refining");
+  }
+
+  /// Mean energy of an expression's differences on a covered cell: what smoothness and trust are measured by.
+  double cellEnergy(const WeightGroup& group) const {
+    const double energy = group.grams.slot(group.grams.slots.whole()).trace() / expressions();
+    const auto cells = static_cast<double>(std::count(grid_.covered.begin(), grid_.covered.end(), 1));
+    return energy > 0.0 ? energy / std::max(cells, 1.0) : 1.0;
+  }
+
+  void solveAndWrite() {
+    switch (options_.method) {
+      case Method::kPaper:
+      case Method::kNoPermutation:
+        for (WeightGroup& group : groups_) solvePaper(group);
+        write();
+        return;
+      case Method::kClosedLoop:
+        for (WeightGroup& group : groups_) solveFitted(group, 0);
+        write();
+        return;
+      case Method::kRefined:
+        refineAndWrite();
+        return;
+    }
+  }
+
+  /// Writes refined weights, unless rounding made them worse than the paper's with textures that suit them: that can
+  /// only be where the paper's are exact or nearly so.
+  void refineAndWrite() {
+    // As many textures as expressions: the start is exact already.
+    const int sweeps = expressions() <= options_.differences ? 0 : RefinementOptions{}.most_sweeps;
+    for (WeightGroup& group : groups_) solveFitted(group, sweeps);
+    const double refined_error = write();
+    double start_error = 0.0;
+    for (const WeightGroup& group : groups_) start_error += group.start_error;
+    if (sweeps == 0 || refined_error <= start_error) return;
+    const std::vector<WeightGroup> refined = groups_;
+    for (WeightGroup& group : groups_) solveFitted(group, 0);
+    if (write() <= refined_error) {
+      progress_.note("the paper's weights are exact here: they are kept");
+      return;
+    }
+    groups_ = refined;
+    write();
+  }
+
+  /// Pass 3: writes what the groups hold. Returns the squared error, metric weights in it, of a fitted solution.
+  double write() {
+    PackageSolution solution;
+    solution.differences = options_.differences;
+    solution.method_json = methodJson(options_, report_, face_.region_description);
+    std::vector<std::unique_ptr<TextureSource>> sources;
+    std::vector<std::pair<FittedTextures*, OpenMap*>> fitted;
+    const bool paper = options_.method == Method::kPaper || options_.method == Method::kNoPermutation;
+    solution.maps.resize(maps_.maps.size());  // in the capture's order; their addresses stay
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      const WeightGroup& group = groups_[g];
+      solution.weights.push_back(group.weights);
+      for (std::size_t m = 0; m < group.maps.size(); ++m) {
+        OpenMap& map = *group.maps[m];
+        MapSolution& out = solution.maps[static_cast<std::size_t>(&map - maps_.maps.data())];
+        out = {&map, static_cast<int>(g), {}, 8, nullptr};
+        if (!paper) out.bits = codeBits(codeError(group, m), group.errors[m], map.samples->shape().type);
+        for (const TextureRange& range : group.ranges[m]) out.encoding.push_back(encodingFor(range, out.bits));
+        if (paper) {
+          sources.push_back(std::make_unique<ClusterTextures>(context_, *texel_masks_, group.coefficients));
+        } else {
+          auto source =
+              std::make_unique<FittedTextures>(context_, weightSpace(), group.weights,
+                                               ridgeOf(RefinementOptions{}, weightSpace()), out.encoding, out.bits);
+          fitted.emplace_back(source.get(), &map);
+          sources.push_back(std::move(source));
+        }
+        out.source = sources.back().get();
+      }
+    }
+    const auto pass = [this](OpenMap& map, TextureSource& source, const std::function<void(const MapBand&)>& visit) {
+      forEachBand(map, "writing", source, visit);
+    };
+    compress::writePackage(context_, capture_, solution, pass, staged_.path());
     clock_.book("writing");
+    double error = 0.0;
+    for (const auto& [source, map] : fitted) error += map->source->metric_weight * source->squaredError();
+    return error;
+  }
+
+  /// Squared error that 8-bit codes of a map's difference textures would add.
+  double codeError(const WeightGroup& group, std::size_t m) const {
+    const std::vector<double> weights = meanSquares(group.weights, weightSpace(), grid_.covered);
+    const OpenMap& map = *group.maps[m];
+    const double texels = static_cast<double>(report_.covered_texels) * map.weight_scale * map.weight_scale /
+                          (static_cast<double>(maps_.maps.front().weight_scale) * maps_.maps.front().weight_scale);
+    return codeSquaredError(group.ranges[m], weights) * texels * expressions();
   }
 
   std::uint64_t diskBytes() const {
@@ -360,8 +432,7 @@ class Compression {
   std::unique_ptr<raster::TexelMasks> texel_masks_;
   MapSet maps_;
   raster::WeightGrid grid_;
-  TextureCoefficients coefficients_;
-  std::vector<int> texture_of_;
+  std::vector<WeightGroup> groups_;
 };
 
 }  // namespace

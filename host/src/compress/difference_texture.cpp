@@ -2,10 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cassert>
-#include <cstring>
-#include <limits>
 
 #include "compress/difference.hpp"
 
@@ -30,10 +27,6 @@ std::vector<float> kernelCoefficients(const TextureCoefficients& table) {
   return result;
 }
 
-std::string encodeDefines(const BandShape& shape, int bits) {
-  return fmt::format("-D CHANNELS={} -D CODE_BITS={}", shape.channels, bits);
-}
-
 }  // namespace
 
 DifferenceTextures::DifferenceTextures(device::DeviceContext& context, const TextureCoefficients& coefficients,
@@ -43,10 +36,7 @@ DifferenceTextures::DifferenceTextures(device::DeviceContext& context, const Tex
       textures_count_(coefficients.textures),
       expressions_(coefficients.expressions),
       coefficients_(context.upload(kernelCoefficients(coefficients), "coefficients of the difference textures")),
-      textures_(context, "difference textures"),
-      ranges_(context, "ranges of the difference textures"),
-      encoding_(context, "encoding of the difference textures", CL_MEM_READ_ONLY),
-      codes_(context, "codes of the difference textures") {
+      textures_(context, "difference textures") {
   assert(textures_count_ >= 1 && textures_count_ <= 8 && expressions_ >= 1);
 }
 
@@ -76,70 +66,6 @@ const cl::Buffer& DifferenceTextures::compute(const DeviceTiles& tiles, const cl
   const std::size_t items = kTileTexels / width;
   context_.run(kernel, cl::NDRange(items, tiles.tileCount()), cl::NDRange(context_.workGroupSize(kernel, items), 1));
   return textures_.buffer();
-}
-
-std::vector<TextureRange> DifferenceTextures::range(const DeviceTiles& tiles, const BandShape& shape) {
-  const std::size_t planes = static_cast<std::size_t>(textures_count_) * static_cast<std::size_t>(shape.channels);
-  std::vector<TextureRange> result(planes,
-                                   {std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()});
-  if (tiles.tileCount() == 0) return result;
-  device::requireBytes(context_, textures_.buffer(), textureBytes(tiles, shape), "difference textures of a band");
-  const std::size_t bytes = tiles.tileCount() * planes * sizeof(cl_float2);
-  ranges_.reserve(bytes);
-  cl::Kernel kernel = context_.kernel("difference_texture_range.cl", "difference_texture_range");
-  kernel.setArg(0, tiles.maskBegin());
-  kernel.setArg(1, tiles.maskWeights());
-  kernel.setArg(2, textures_.buffer());
-  kernel.setArg(3, ranges_.buffer());
-  kernel.setArg(4, static_cast<cl_int>(planes));
-  context_.run(kernel, cl::NDRange(tiles.tileCount()), cl::NDRange(1));
-  const device::MappedBytes mapped = ranges_.mapForReading(bytes);
-  const std::span<const cl_float2> ranges = mapped.as<const cl_float2>();
-  for (std::size_t i = 0; i < ranges.size(); ++i) {
-    TextureRange& range = result[i % planes];
-    range.min = std::min(range.min, ranges[i].s[0]);
-    range.max = std::max(range.max, ranges[i].s[1]);
-  }
-  return result;
-}
-
-void DifferenceTextures::clear(const BandShape& shape, int bits) {
-  cl::Kernel kernel =
-      context_.kernel("difference_texture_encode.cl", "difference_texture_clear", encodeDefines(shape, bits));
-  kernel.setArg(0, encoding_.buffer());
-  kernel.setArg(1, codes_.buffer());
-  context_.run(kernel,
-               cl::NDRange(static_cast<std::size_t>(shape.width), static_cast<std::size_t>(shape.rows),
-                           static_cast<std::size_t>(textures_count_)),
-               cl::NullRange);
-}
-
-void DifferenceTextures::encode(const DeviceTiles& tiles, const BandShape& shape,
-                                std::span<const TextureEncoding> encoding, int bits, std::span<std::byte> codes) {
-  assert(encoding.size() == static_cast<std::size_t>(textures_count_) * static_cast<std::size_t>(shape.channels));
-  assert(bits == 8 || bits == 16);
-  assert(codes.size() == static_cast<std::size_t>(shape.rows) * static_cast<std::size_t>(shape.width) *
-                             encoding.size() * static_cast<std::size_t>(bits / 8));
-  std::vector<cl_float2> factors;
-  for (const TextureEncoding& e : encoding) factors.push_back({{e.scale > 0.0f ? 1.0f / e.scale : 0.0f, e.offset}});
-  encoding_.upload(std::span<const cl_float2>(factors));
-  codes_.reserve(codes.size());
-  clear(shape, bits);
-  if (tiles.tileCount() > 0) {
-    device::requireBytes(context_, textures_.buffer(), textureBytes(tiles, shape), "difference textures of a band");
-    cl::Kernel kernel =
-        context_.kernel("difference_texture_encode.cl", "difference_texture_encode", encodeDefines(shape, bits));
-    kernel.setArg(0, tiles.positions());
-    kernel.setArg(1, textures_.buffer());
-    kernel.setArg(2, encoding_.buffer());
-    kernel.setArg(3, codes_.buffer());
-    kernel.setArg(4, static_cast<cl_int>(shape.width));
-    kernel.setArg(5, static_cast<cl_int>(shape.rows));
-    context_.run(kernel, cl::NDRange(kTileSide, static_cast<std::size_t>(textures_count_), tiles.tileCount()),
-                 cl::NDRange(context_.workGroupSize(kernel, kTileSide), 1, 1));
-  }
-  const device::MappedBytes mapped = codes_.mapForReading(codes.size());
-  if (!codes.empty()) std::memcpy(codes.data(), mapped.bytes().data(), codes.size());
 }
 
 }  // namespace facezip::compress

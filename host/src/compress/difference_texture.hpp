@@ -1,14 +1,12 @@
-// difference_texture.hpp - the difference textures D_i of one band (FaceZip, Eq. 5), their range and their codes.
+// difference_texture.hpp - the difference textures D_i of one band (FaceZip, Eq. 5).
 //   D_i(p) = sum_k M_k(p) * sum_n coefficients[k][i][n] * Delta_n(p)
 // M_k here includes the gutter around the covered texels, so that bilinear and mip sampling never meet an empty texel.
 #pragma once
 
 #include <cstddef>
-#include <span>
 #include <vector>
 
 #include "compress/device_tiles.hpp"
-#include "compress/texture_encoding.hpp"
 #include "compress/tile_band.hpp"
 #include "device/device_context.hpp"
 #include "device/pooled_buffer.hpp"
@@ -35,21 +33,11 @@ class DifferenceTextures {
   /// differences  what computeDifferences() wrote for the same tiles and shape
   const cl::Buffer& compute(const DeviceTiles& tiles, const cl::Buffer& differences, const BandShape& shape);
 
-  /// Range of what compute() made last, over the texels where a mask is active (gutter too):
-  /// entry texture * shape.channels + channel.
-  std::vector<TextureRange> range(const DeviceTiles& tiles, const BandShape& shape);
-
-  /// Encodes what compute() made last into `codes`, [texture][shape.rows][shape.width][channel]: the code nearest to
-  /// the value, halves upwards, clamped to the codes there are. Texels without a mask get the code of 0.
-  /// encoding  C x shape.channels, as in range()
-  /// bits      of a code: 8 or 16, 16-bit codes in the byte order of the host
-  /// codes     exactly C * rows * width * channels * bits / 8 bytes
-  void encode(const DeviceTiles& tiles, const BandShape& shape, std::span<const TextureEncoding> encoding, int bits,
-              std::span<std::byte> codes);
+  /// What compute() made last.
+  const cl::Buffer& textures() const { return textures_.buffer(); }
 
  private:
   std::size_t textureBytes(const DeviceTiles& tiles, const BandShape& shape) const;
-  void clear(const BandShape& shape, int bits);
 
   device::DeviceContext& context_;
   device::KernelVariant variant_;
@@ -57,9 +45,6 @@ class DifferenceTextures {
   int expressions_;
   cl::Buffer coefficients_;
   device::PooledBuffer textures_;
-  device::PooledBuffer ranges_;
-  device::PooledBuffer encoding_;
-  device::PooledBuffer codes_;
 };
 
 }  // namespace facezip::compress

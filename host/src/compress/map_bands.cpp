@@ -15,9 +15,8 @@ BandShape bandShape(const image::SampleBands& samples, int rows) {
   return {shape.width, rows, shape.channels, samples.expressions(), shape.type};
 }
 
-void forEachMapBand(image::SampleBands& samples, int band_rows, BandBuffers& buffers,
-                    const std::function<TileMasks(int begin, int end)>& make_tiles, std::string_view stage,
-                    Progress& progress, const std::function<void(const MapBand&)>& visit) {
+void forEachMapBand(image::SampleBands& samples, int band_rows, BandBuffers& buffers, const MakeTiles& make_tiles,
+                    std::string_view stage, Progress& progress, const std::function<void(const MapBand&)>& visit) {
   progress.stage(stage, static_cast<std::size_t>(samples.shape().height));
   samples.forEachBand(band_rows, progress, [&](const image::SampleBand& band) {
     const BandShape shape = bandShape(samples, band.end - band.begin);

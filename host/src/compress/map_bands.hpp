@@ -38,11 +38,12 @@ class BandBuffers {
 /// Shape of the bands of a map, `rows` rows each.
 BandShape bandShape(const image::SampleBands& samples, int rows);
 
+/// Gives the tiles of rows [begin, end) of a map.
+using MakeTiles = std::function<TileMasks(int begin, int end)>;
+
 /// Runs `visit` on every band of a map from top to bottom, with its tiles uploaded and its differences computed.
-/// make_tiles  gives the tiles of rows [begin, end)
 /// Throws what reading, the device and `visit` throw, and Cancelled.
-void forEachMapBand(image::SampleBands& samples, int band_rows, BandBuffers& buffers,
-                    const std::function<TileMasks(int begin, int end)>& make_tiles, std::string_view stage,
-                    Progress& progress, const std::function<void(const MapBand&)>& visit);
+void forEachMapBand(image::SampleBands& samples, int band_rows, BandBuffers& buffers, const MakeTiles& make_tiles,
+                    std::string_view stage, Progress& progress, const std::function<void(const MapBand&)>& visit);
 
 }  // namespace facezip::compress

@@ -105,6 +105,7 @@ class Refiner {
     for (OpenMap* map : problem.maps) maps_.push_back(std::make_unique<MapWindow>(context, *map, problem.space));
     result_.ranges.resize(maps_.size());
     result_.start_errors.resize(maps_.size(), 0.0);
+    result_.end_errors.resize(maps_.size(), 0.0);
     result_.errors.assign(static_cast<std::size_t>(options.most_sweeps) + 1, 0.0);
   }
 
@@ -183,7 +184,10 @@ class Refiner {
         rows.free_begin, rows.free_end,
         std::span(weights).subspan(static_cast<std::size_t>(rows.free_begin - rows.begin) * row_floats,
                                    static_cast<std::size_t>(rows.free_end - rows.free_begin) * row_floats));
-    for (std::size_t m = 0; m < maps_.size(); ++m) widen(result_.ranges[m], maps_[m]->range());
+    for (std::size_t m = 0; m < maps_.size(); ++m) {
+      widen(result_.ranges[m], maps_[m]->range());
+      result_.end_errors[m] += maps_[m]->error().plain;
+    }
   }
 
   device::DeviceContext& context_;

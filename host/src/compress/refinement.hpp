@@ -47,6 +47,7 @@ struct Refinement {
   std::vector<std::vector<TextureRange>> ranges;
   std::vector<double> errors;  ///< squared error, texel and metric weights in it, at the start and after each sweep
   std::vector<double> start_errors;  ///< of every map: plain squared error at the start, in (1/255)^2
+  std::vector<double> end_errors;    ///< and with `weights`, before anything is rounded
 };
 
 /// Refines. Throws DeviceError, InputError, OutputError, Cancelled.

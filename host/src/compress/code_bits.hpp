@@ -1,0 +1,28 @@
+// code_bits.hpp - whether 8-bit difference textures are enough, by the error that their rounding adds.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "compress/grid_weights.hpp"
+#include "compress/texture_encoding.hpp"
+#include "facezip/sample_type.hpp"
+
+namespace facezip::compress {
+
+/// Mean of W^2 of each weight channel over the cells that `used` marks and all expressions, as decoded; C values.
+std::vector<double> meanSquares(const EncodedWeights& weights, const WeightSpace& space,
+                                std::span<const std::uint8_t> used);
+
+/// Squared error that rounding difference textures to 8 bits adds to one texel of one expression, summed over channels:
+/// a step's variance is its square / 12, and texture i counts with the mean square of its weights.
+/// ranges          C x channels
+/// weight_squares  C
+double codeSquaredError(std::span<const TextureRange> ranges, std::span<const double> weight_squares);
+
+/// 16 where samples have more than 8 bits and 8-bit codes would add more than a twentieth to the squared error (2.5 %
+/// to the RMSE); else 8. 8-bit frames round by more than the codes of their differences do.
+int codeBits(double code_error, double error, SampleType type);
+
+}  // namespace facezip::compress

@@ -1,0 +1,66 @@
+// texture_source.hpp - where the difference textures that are written come from: the paper's clusters, or a fit to the
+// weights as they are decoded.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "compress/difference_fit.hpp"
+#include "compress/difference_texture.hpp"
+#include "compress/grid_weights.hpp"
+#include "compress/map_bands.hpp"
+#include "compress/map_set.hpp"
+#include "raster/texel_masks.hpp"
+
+namespace facezip::compress {
+
+class TextureSource {
+ public:
+  virtual ~TextureSource() = default;
+  /// Tiles of rows [begin, end) of a map, with what compute() needs of masks.
+  virtual TileMasks tiles(const OpenMap& map, int begin, int end) const = 0;
+  /// Difference textures of a band, [tile][C][channel][256] float in units of 1/255. The next call overwrites them.
+  virtual const cl::Buffer& compute(const OpenMap& map, const MapBand& band) = 0;
+};
+
+/// FaceZip, Eq. 5.
+class ClusterTextures : public TextureSource {
+ public:
+  ClusterTextures(device::DeviceContext& context, const raster::TexelMasks& masks,
+                  const TextureCoefficients& coefficients)
+      : masks_(masks), textures_(context, coefficients) {}
+  TileMasks tiles(const OpenMap& map, int begin, int end) const override {
+    return masks_.tiles(*map.raster, begin, end);
+  }
+  const cl::Buffer& compute(const OpenMap&, const MapBand& band) override {
+    return textures_.compute(band.tiles, band.differences, band.shape);
+  }
+
+ private:
+  const raster::TexelMasks& masks_;
+  DifferenceTextures textures_;
+};
+
+/// The textures that suit the weights as they are decoded, rounded to their codes (difference_fit.hpp).
+class FittedTextures : public TextureSource {
+ public:
+  /// weights, encoding  are kept by reference; encoding and bits are the map's
+  FittedTextures(device::DeviceContext& context, const WeightSpace& space, const EncodedWeights& weights, float ridge,
+                 std::span<const TextureEncoding> encoding, int bits);
+  TileMasks tiles(const OpenMap& map, int begin, int end) const override;
+  const cl::Buffer& compute(const OpenMap& map, const MapBand& band) override;
+
+  /// Squared error over the covered texels of all bands so far, in (1/255)^2, before frames are rounded.
+  double squaredError() const { return squared_error_; }
+
+ private:
+  const EncodedWeights& weights_;
+  float ridge_;
+  std::span<const TextureEncoding> encoding_;
+  int bits_;
+  WeightWindow window_;
+  DifferenceFit fit_;
+  double squared_error_ = 0.0;
+};
+
+}  // namespace facezip::compress

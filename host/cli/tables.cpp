@@ -69,6 +69,14 @@ void printCompressReport(const CompressReport& report) {
   } else {
     fmt::print("permutation cost {:.4g} (not permuted)\n", report.permutation_cost);
   }
+  if (report.refinement_errors.size() > 1 && report.refinement_errors.front() > 0.0) {
+    fmt::print("refining: squared error");
+    for (const double error : report.refinement_errors) {
+      fmt::print(" {:.1f} %", 100.0 * error / report.refinement_errors.front());
+    }
+    fmt::print("\n");
+  }
+  for (const auto& [map, rmse] : report.rmse) fmt::print("{}: RMSE {:.3f} (0..255)\n", map, rmse);
   fmt::print("package on disk {}, peak memory {}\n\n", formatMegabytes(report.package_disk_bytes),
              formatMegabytes(report.peak_memory_bytes));
   printSeconds(report.seconds);

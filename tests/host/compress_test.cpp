@@ -216,7 +216,7 @@ TEST(Compress, CancelLeavesNothing) {
    private:
     std::string stage_;
   };
-  for (const char* stage : {"masks", "Gram", "clustering", "range", "writing"}) {
+  for (const char* stage : {"masks", "Gram", "clustering", "permutation", "writing"}) {
     const test::TemporaryDirectory folder;
     test::writeSmallCapture(folder / "c", {.expressions = 3});
     CancelInStage progress(stage);

@@ -24,7 +24,7 @@ struct CompressOptions {
     kPaper,          ///< clusters, permuted so that seams fit (FaceZip, section 3.1)
     kNoPermutation,  ///< clusters in the order of the clustering; the paper's ablation, for comparison only
   };
-  Method method = Method::kPaper;
+  Method method = Method::kRefined;
   int differences = 4;  ///< C, difference textures of every map and weight channels of every expression; 1 to 8
   /// A set of weights for every map, instead of one that all share.
   bool weights_per_map = false;
@@ -59,6 +59,9 @@ struct CompressReport {
   double permutation_cost_median = 0.0;          ///< median of the restarts' final costs
   std::vector<double> restart_costs;             ///< final cost of every restart
   std::vector<std::vector<double>> convergence;  ///< cost after each sweep, per restart
+  /// Of every map whose difference textures were fitted (not with the paper's method): RMSE over the covered texels,
+  /// expressions and channels, in 1/255 of full scale, of what is written, before frames are rounded.
+  std::vector<std::pair<std::string, double>> rmse;
   /// Squared error after each sweep of the refinement, from the start on, texel and metric weights in it; of the last
   /// set of weights. Empty where nothing was refined.
   std::vector<double> refinement_errors;

@@ -213,6 +213,7 @@ class Compression {
   void accumulateGrams() {
     const GramSlots slots = gramSlots();
     clock_.book("overlaps");
+    covered_texels_.assign(maps_.maps.size(), 0);
     for (WeightGroup& group : groups_) {
       GramAccumulator accumulator(context_, slots, expressions());
       for (OpenMap* map : group.maps) {
@@ -224,10 +225,11 @@ class Compression {
               static_cast<std::uint64_t>(std::count_if(band.masks.texel_weights.begin(), band.masks.texel_weights.end(),
                                                        [](float weight) { return weight > 0.0f; }));
         });
-        if (map == &maps_.maps.front()) report_.covered_texels = covered;
+        covered_texels_[static_cast<std::size_t>(map - maps_.maps.data())] = covered;
       }
       group.grams = accumulator.finish();
     }
+    report_.covered_texels = covered_texels_.front();
     report_.overlapping_pairs = static_cast<int>(slots.pairs.size());
     clock_.book("Gram matrices");
   }
@@ -398,17 +400,23 @@ class Compression {
     compress::writePackage(context_, capture_, solution, pass, staged_.path());
     clock_.book("writing");
     double error = 0.0;
-    for (const auto& [source, map] : fitted) error += map->source->metric_weight * source->squaredError();
+    report_.rmse.clear();
+    for (const auto& [source, map] : fitted) {
+      error += map->source->metric_weight * source->squaredError();
+      const double samples = coveredTexels(*map) * map->samples->shape().channels * expressions();
+      report_.rmse.emplace_back(map->source->name, std::sqrt(source->squaredError() / samples));
+    }
     return error;
   }
 
   /// Squared error that 8-bit codes of a map's difference textures would add.
   double codeError(const WeightGroup& group, std::size_t m) const {
     const std::vector<double> weights = meanSquares(group.weights, weightSpace(), grid_.covered);
-    const OpenMap& map = *group.maps[m];
-    const double texels = static_cast<double>(report_.covered_texels) * map.weight_scale * map.weight_scale /
-                          (static_cast<double>(maps_.maps.front().weight_scale) * maps_.maps.front().weight_scale);
-    return codeSquaredError(group.ranges[m], weights) * texels * expressions();
+    return codeSquaredError(group.ranges[m], weights) * coveredTexels(*group.maps[m]) * expressions();
+  }
+
+  double coveredTexels(const OpenMap& map) const {
+    return static_cast<double>(covered_texels_[static_cast<std::size_t>(&map - maps_.maps.data())]);
   }
 
   std::uint64_t diskBytes() const {
@@ -433,6 +441,7 @@ class Compression {
   MapSet maps_;
   raster::WeightGrid grid_;
   std::vector<WeightGroup> groups_;
+  std::vector<std::uint64_t> covered_texels_;  ///< of every map
 };
 
 }  // namespace

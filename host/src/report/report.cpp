@@ -43,10 +43,13 @@ std::string toJson(const CompressReport& report) {
         {"median_cost", report.permutation_cost_median},
         {"restart_costs", report.restart_costs},
         {"convergence", report.convergence}}},
+      {"rmse", json::object()},
+      {"refinement", {{"squared_errors", report.refinement_errors}}},
       {"band_rows", report.band_rows},
       {"later_passes", report.decoded},
       {"bytes", {{"package_disk", report.package_disk_bytes}, {"peak_memory", report.peak_memory_bytes}}},
       {"seconds", secondsJson(report.seconds)}};
+  for (const auto& [map, rmse] : report.rmse) object["rmse"][map] = rmse;
   object["seconds"]["waiting for textures"] = report.wait_seconds;
   object["seconds"]["decoding textures"] = report.decode_seconds;
   return object.dump(2) + "\n";

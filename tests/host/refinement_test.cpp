@@ -1,0 +1,259 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+#include <string>
+
+#include "compress/code_bits.hpp"
+#include "compress/grid_weights.hpp"
+#include "facezip/compress.hpp"
+#include "facezip/evaluate.hpp"
+#include "facezip/package.hpp"
+#include "small_capture.hpp"
+#include "temporary_directory.hpp"
+
+namespace facezip {
+namespace {
+namespace fs = std::filesystem;
+using Method = CompressOptions::Method;
+
+const Device& testDevice() {
+  static const Device device = openDevice("cpu");
+  return device;
+}
+
+/// A capture of one map from a function of texel, channel and expression, in units of 1/255.
+struct Kind {
+  std::string name;
+  int expressions = 6;
+  int width = 80;
+  int height = 80;
+  image::SampleType type = image::SampleType::kUint8;
+  std::function<double(int x, int y, int c, int n)> difference;
+};
+
+void PrintTo(const Kind& kind, std::ostream* out) { *out << kind.name; }
+
+double noise(int x, int y, int c, int n) {
+  std::uint32_t h =
+      static_cast<std::uint32_t>(x * 73856093 ^ y * 19349663 ^ c * 83492791 ^ (n + 1) * 2654435) * 2654435761u;
+  h ^= h >> 15;
+  h *= 2246822519u;
+  h ^= h >> 13;
+  return static_cast<double>(h % 2001) / 1000.0 - 1.0;
+}
+
+double spot(double x, double y, double centre_x, double centre_y, double radius) {
+  return std::exp(-((x - centre_x) * (x - centre_x) + (y - centre_y) * (y - centre_y)) / (radius * radius));
+}
+
+double wrinkles(int x, int y, int c, int n) {
+  const double stripes = std::sin(0.4 * x * std::cos(0.7 * n) + 0.4 * y * std::sin(0.7 * n));
+  return (40.0 - 8.0 * c) * stripes * spot(x, y, 16.0 + 11.0 * (n % 6), 20.0 + 17.0 * (n % 4), 22.0) +
+         2.0 * noise(x, y, c, n);
+}
+
+void writeCapture(const fs::path& folder, const Kind& kind) {
+  fs::create_directories(folder / "albedo");
+  geometry::writeObj(folder / "neutral.obj", test::gridMesh(21));
+  const image::ImageShape shape{kind.width, kind.height, 3, kind.type};
+  const std::string extension = kind.type == image::SampleType::kFloat32 ? ".exr" : ".png";
+  const auto neutral = [](int x, int y, int c) { return 120.0 + 10.0 * std::sin(0.3 * x + 0.2 * y + c); };
+  image::writeImage(folder / "albedo" / ("neutral" + extension), test::makeImage(shape, neutral));
+  for (int n = 0; n < kind.expressions; ++n) {
+    const auto expression = [&](int x, int y, int c) {
+      const double value = neutral(x, y, c) + kind.difference(x, y, c, n);
+      return kind.type == image::SampleType::kFloat32 ? value : std::clamp(value, 0.0, 255.0);
+    };
+    image::writeImage(folder / "albedo" / (test::smallExpressionName(n) + extension),
+                      test::makeImage(shape, expression));
+  }
+}
+
+CompressOptions optionsOf(Method method, int differences = 4) {
+  CompressOptions options;
+  options.method = method;
+  options.differences = differences;
+  options.unit = "m";
+  options.mask_radius = {5.0, geometry::LengthUnit::kCentimetre};
+  options.restarts = 20;
+  options.cluster_restarts = 16;
+  return options;
+}
+
+/// RMSE of the package made of the capture in `folder`/c. energy  gets the sum of squared differences to the neutral.
+double rmse(const fs::path& folder, const CompressOptions& options, CompressReport* report = nullptr,
+            double* energy = nullptr) {
+  Progress progress;
+  const Capture capture = openCapture(folder / "c");
+  const CompressReport compressed = compressCapture(capture, folder / "p", options, testDevice(), progress);
+  if (report != nullptr) *report = compressed;
+  const Evaluation evaluation =
+      evaluatePackage(capture, Package::open(folder / "p"), {.pca4 = false, .pca8 = false, .no_permutation = false},
+                      testDevice(), progress);
+  const double samples = 3.0 * static_cast<double>(evaluation.covered_texels * evaluation.expressions.size());
+  if (energy != nullptr) *energy = std::pow(evaluation.maps[0].rms_difference, 2) * samples;
+  return evaluation.maps[0].rmse.at("package").pooled;
+}
+
+class AnyCapture : public testing::TestWithParam<Kind> {};
+
+TEST_P(AnyCapture, RefinedIsNeverWorseThanThePaper) {
+  const test::TemporaryDirectory folder;
+  writeCapture(folder / "c", GetParam());
+  for (const int differences : {1, 4}) {
+    const double paper = rmse(folder.path(), optionsOf(Method::kPaper, differences));
+    const double refined = rmse(folder.path(), optionsOf(Method::kRefined, differences));
+    EXPECT_LE(refined, paper + 1e-9) << differences;
+    const double closed = rmse(folder.path(), optionsOf(Method::kClosedLoop, differences));
+    EXPECT_LE(closed, paper + 1e-9) << differences;
+  }
+}
+
+TEST_P(AnyCapture, SweepsNeverRaiseTheError) {
+  const test::TemporaryDirectory folder;
+  writeCapture(folder / "c", GetParam());
+  CompressReport report;
+  double energy = 0.0;
+  rmse(folder.path(), optionsOf(Method::kRefined), &report, &energy);
+  // Below a millionth of the energy, the ridge and rounding in float32 are all that is left.
+  for (std::size_t i = 1; i < report.refinement_errors.size(); ++i) {
+    EXPECT_LE(report.refinement_errors[i], report.refinement_errors[i - 1] + 1e-6 * energy) << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, AnyCapture,
+                         testing::Values(Kind{"wrinkles", 12, 80, 80, image::SampleType::kUint8, wrinkles},
+                                         Kind{"noise only", 8, 80, 80, image::SampleType::kUint8,
+                                              [](int x, int y, int c, int n) { return 6.0 * noise(x, y, c, n); }},
+                                         Kind{"nothing changes", 6, 80, 80, image::SampleType::kUint8,
+                                              [](int, int, int, int) { return 0.0; }},
+                                         Kind{"constant differences", 7, 80, 80, image::SampleType::kUint8,
+                                              [](int, int, int, int n) { return 5.0 * n - 12.0; }},
+                                         Kind{"one expression", 1, 80, 80, image::SampleType::kUint8, wrinkles},
+                                         Kind{"fewer than textures", 3, 80, 80, image::SampleType::kUint8, wrinkles},
+                                         Kind{"identical expressions", 9, 80, 80, image::SampleType::kUint8,
+                                              [](int x, int y, int c, int) { return wrinkles(x, y, c, 2); }},
+                                         Kind{"pairs of twins", 8, 80, 80, image::SampleType::kUint8,
+                                              [](int x, int y, int c, int n) { return wrinkles(x, y, c, n / 2); }},
+                                         Kind{"tiny image", 6, 5, 7, image::SampleType::kUint8, wrinkles},
+                                         Kind{"huge amplitudes", 6, 48, 48, image::SampleType::kFloat32,
+                                              [](int x, int y, int c, int n) { return 4000.0 * wrinkles(x, y, c, n); }},
+                                         Kind{"minute amplitudes", 6, 48, 48, image::SampleType::kFloat32,
+                                              [](int x, int y, int c, int n) { return 1e-4 * wrinkles(x, y, c, n); }},
+                                         Kind{"16-bit", 6, 48, 48, image::SampleType::kUint16, wrinkles},
+                                         Kind{"one texel", 6, 80, 80, image::SampleType::kUint8,
+                                              [](int x, int y, int, int n) {
+                                                return x == 40 + n && y == 40 ? 100.0 : 0.0;
+                                              }},
+                                         Kind{"one texel in noise", 6, 80, 80, image::SampleType::kUint8,
+                                              [](int x, int y, int c, int n) {
+                                                return (x == 41 && y == 40 ? 100.0 : 0.0) + noise(x, y, c, n);
+                                              }}),
+                         [](const auto& kind) {
+                           std::string name = kind.param.name;
+                           for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+                           return name;
+                         });
+
+TEST(Refinement, HalvesThePapersErrorOnLocalWrinkles) {
+  const test::TemporaryDirectory folder;
+  writeCapture(folder / "c", {"wrinkles", 16, 96, 96, image::SampleType::kUint8, wrinkles});
+  const double paper = rmse(folder.path(), optionsOf(Method::kPaper));
+  EXPECT_LT(rmse(folder.path(), optionsOf(Method::kRefined)), 0.6 * paper);
+  EXPECT_LT(rmse(folder.path(), optionsOf(Method::kRefined, 1)), 1.1 * paper) << "one texture against four";
+}
+
+TEST(Refinement, MoreTexturesAreNeverWorse) {
+  const test::TemporaryDirectory folder;
+  writeCapture(folder / "c", {"wrinkles", 16, 64, 64, image::SampleType::kUint8, wrinkles});
+  double last = 1e9;
+  for (const int differences : {1, 2, 3, 5, 8}) {
+    const double error = rmse(folder.path(), optionsOf(Method::kRefined, differences));
+    EXPECT_LT(error, last) << differences;
+    last = error;
+  }
+}
+
+// Windows of one height or another, and maps of another size beside the largest, find nearly the same weights.
+TEST(Refinement, HardlyDependsOnTheWindows) {
+  const test::TemporaryDirectory folder;
+  writeCapture(folder / "c", {"wrinkles", 10, 96, 512, image::SampleType::kUint8, wrinkles});
+  CompressOptions options = optionsOf(Method::kRefined);
+  const double whole = rmse(folder.path(), options);
+  options.memory_bytes = 262ull << 20;
+  CompressReport report;
+  const double banded = rmse(folder.path(), options, &report);
+  EXPECT_NEAR(banded, whole, 0.02 * whole);
+}
+
+TEST(Refinement, StaysTameWhereNothingChanges) {
+  const test::TemporaryDirectory folder;
+  writeCapture(folder / "c", {"left half", 10, 96, 96, image::SampleType::kUint8,
+                              [](int x, int y, int c, int n) { return x < 48 ? wrinkles(x, y, c, n) : 0.0; }});
+  rmse(folder.path(), optionsOf(Method::kRefined));
+  const PackageWeights& weights = Package::open(folder / "p").weightSets()[0];
+  for (std::size_t i = 0; i < weights.scale.size(); ++i) {
+    EXPECT_GT(weights.offset[i], -8.0);
+    EXPECT_LT(weights.offset[i] + 255.0 * weights.scale[i], 8.0);
+  }
+}
+
+TEST(Refinement, PreciseMapsGetPreciseTextures) {
+  const test::TemporaryDirectory folder;
+  // As many textures as expressions: what 8-bit codes lose is all the error there is.
+  Kind kind{"fewer than textures", 3, 48, 48, image::SampleType::kUint16, wrinkles};
+  writeCapture(folder / "c", kind);
+  const double fine = rmse(folder.path(), optionsOf(Method::kRefined));
+  EXPECT_EQ(Package::open(folder / "p").maps()[0].difference_bits, 16);
+  EXPECT_LT(fine, 0.01);
+  kind.type = image::SampleType::kUint8;
+  writeCapture(folder / "c8", kind);
+  fs::remove_all(folder / "c");
+  fs::rename(folder / "c8", folder / "c");
+  rmse(folder.path(), optionsOf(Method::kRefined));
+  EXPECT_EQ(Package::open(folder / "p").maps()[0].difference_bits, 8);
+}
+
+TEST(GridWeights, ClampAFewFarValues) {
+  const compress::WeightSpace space{10, 10, 2, 20};
+  compress::GridWeights weights(space);
+  std::vector<float> rows(10 * space.rowFloats(), 0.0f);
+  for (std::size_t cell = 0; cell < 100; ++cell) {
+    for (std::size_t n = 0; n < 20; ++n) {
+      rows[(cell * 2 + 0) * space.lanes() + n] = static_cast<float>((cell * 20 + n) % 101) / 100.0f;
+      rows[(cell * 2 + 1) * space.lanes() + n] = -0.5f;
+    }
+  }
+  rows[(55 * 2 + 0) * space.lanes() + 3] = 1000.0f;
+  weights.store(0, 10, rows);
+  std::vector<std::uint8_t> used(100, 1);
+  const compress::EncodedWeights exact = weights.encode(used, 0.0);
+  EXPECT_NEAR(exact.scale[0], 1000.0 / 255.0, 1e-6);
+  const compress::EncodedWeights clamped = weights.encode(used, 0.001);
+  EXPECT_EQ(clamped.offset[0], 0.0);
+  EXPECT_NEAR(clamped.scale[0], 1.0 / 255.0, 1e-6);
+  EXPECT_EQ(clamped.scale[1], 0.0);
+  EXPECT_EQ(clamped.offset[1], -0.5);
+  std::vector<float> decoded(rows.size());
+  compress::decodeRows(clamped, space, 0, 10, decoded);
+  for (std::size_t i = 0; i < rows.size(); ++i) ASSERT_NEAR(decoded[i], std::min(rows[i], 1.0f), 0.5f / 255.0f + 1e-3f);
+  used.assign(100, 1);
+  used[55] = 0;
+  EXPECT_NEAR(weights.encode(used, 0.0).scale[0], 1.0 / 255.0, 1e-6) << "unused cells do not stretch the range";
+}
+
+TEST(CodeBits, GoByTheErrorThatTheyAdd) {
+  const std::vector<compress::TextureRange> ranges(3, {-127.5f, 127.5f});
+  const double error = compress::codeSquaredError(ranges, std::vector<double>{0.5});
+  EXPECT_NEAR(error, 3.0 * 0.5 / 12.0, 0.01);
+  EXPECT_EQ(compress::codeBits(error, 100.0 * error, SampleType::kUint16), 8);
+  EXPECT_EQ(compress::codeBits(error, 10.0 * error, SampleType::kUint16), 16);
+  EXPECT_EQ(compress::codeBits(error, 10.0 * error, SampleType::kFloat32), 16);
+  EXPECT_EQ(compress::codeBits(error, 10.0 * error, SampleType::kUint8), 8);
+}
+
+}  // namespace
+}  // namespace facezip

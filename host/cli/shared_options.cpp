@@ -58,6 +58,10 @@ void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
                   "Part of the face that changes: a file of triangle indices (.txt), a painted image, or whole")
       ->type_name("FILE");
   command
+      .add_option("--importance", options.importance,
+                  "Painted image of where errors matter more (default: the capture's importance.png), or none")
+      ->type_name("FILE");
+  command
       .add_option("--gutter", arguments.gutter,
                   "Texels around UV islands that get masks too (default: 1/64 of the side, at least 16)")
       ->check(CLI::NonNegativeNumber);

@@ -11,6 +11,7 @@
 #include "facezip/compress.hpp"
 #include "facezip/evaluate.hpp"
 #include "facezip/package.hpp"
+#include "facezip/reconstruct.hpp"
 #include "small_capture.hpp"
 #include "temporary_directory.hpp"
 
@@ -187,6 +188,36 @@ TEST(Refinement, HardlyDependsOnTheWindows) {
   CompressReport report;
   const double banded = rmse(folder.path(), options, &report);
   EXPECT_NEAR(banded, whole, 0.02 * whole);
+}
+
+// Where the painted image is white the error falls.
+TEST(Refinement, ImportanceMovesTheErrorAway) {
+  const test::TemporaryDirectory folder;
+  writeCapture(folder / "c", {"wrinkles", 16, 96, 96, image::SampleType::kUint8, wrinkles});
+  const auto left_error = [&] {
+    rmse(folder.path(), optionsOf(Method::kRefined, 2));
+    Progress progress;
+    double sum = 0.0;
+    const Package package = Package::open(folder / "p");
+    reconstruct(package, folder / "frames", {}, testDevice(), progress);
+    for (const std::string& name : package.expressions()) {
+      const image::Image decoded = image::readImage(folder / "frames" / "albedo" / (name + ".png"));
+      const image::Image captured = image::readImage(folder / "c" / "albedo" / (name + ".png"));
+      for (std::size_t i = 0; i < decoded.samples.size(); ++i) {
+        const std::size_t x = i / 3 % 96;
+        if (x < 12 || x >= 46) continue;
+        sum += std::pow(std::to_integer<int>(decoded.samples[i]) - std::to_integer<int>(captured.samples[i]), 2);
+      }
+    }
+    return sum;
+  };
+  const double even = left_error();
+  image::writeImage(folder / "c/importance.png", test::makeImage({32, 32, 1, image::SampleType::kUint8},
+                                                                 [](int x, int, int) { return x < 16 ? 255.0 : 0.0; }));
+  EXPECT_LT(left_error(), even);
+  image::writeImage(folder / "c/importance.png",
+                    test::makeImage({8, 8, 1, image::SampleType::kUint8}, [](int, int, int) { return 0.0; }));
+  EXPECT_THROW(rmse(folder.path(), optionsOf(Method::kRefined)), InputError);
 }
 
 TEST(Refinement, StaysTameWhereNothingChanges) {

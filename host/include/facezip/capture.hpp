@@ -30,11 +30,12 @@ struct Capture {
   std::string unit;                                      ///< of the meshes' coordinates as written, "" if not stated
   std::optional<std::filesystem::path> face_region;      ///< triangle indices of the part that changes
   std::optional<std::filesystem::path> coverage;         ///< or a painted image of it
+  std::optional<std::filesystem::path> importance;       ///< painted image of where errors matter more
 };
 
 /// Finds what is in `directory` (layout in docs/capture_format.md). capture.json, where present, decides; what it
 /// leaves out is found by name: MAP/neutral.EXT and MAP/NAME.EXT for textures, neutral.obj, expressions/NAME.obj,
-/// face_region.txt, coverage.png. Expressions come in the order of capture.json, else by name.
+/// face_region.txt, coverage.png, importance.png. Expressions come in the order of capture.json, else by name.
 /// map_names  maps to take, in this order; empty: all
 /// Throws InputError: no directory, no neutral mesh, no map, a map without neutral, an expression that one map has and
 /// another lacks, two expressions with the same name, no expression, malformed capture.json.

@@ -41,6 +41,9 @@ struct CompressOptions {
   /// Which part of the face: "" the capture's own (face_region.txt, else coverage.png, else the whole mesh), "whole",
   /// or a file of triangle indices (.txt) or a painted image.
   std::string region;
+  /// Painted image of where errors matter more: "" the capture's own if it has one, "none", or an image. White counts
+  /// fully, black a hundredth.
+  std::string importance;
   std::optional<int> gutter;  ///< texels; default max(16, side / 64)
 };
 

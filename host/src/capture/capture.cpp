@@ -183,6 +183,7 @@ Capture openCapture(const fs::path& directory, const std::vector<std::string>& m
   }
   capture.face_region = optionalFile(directory, description.face_region, "face_region.txt");
   capture.coverage = optionalFile(directory, description.coverage, "coverage.png");
+  capture.importance = optionalFile(directory, description.importance, "importance.png");
   return capture;
 }
 

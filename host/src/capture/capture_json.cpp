@@ -88,6 +88,7 @@ std::optional<CaptureJson> readCaptureJson(const std::filesystem::path& file) {
   description.neutral_mesh = fields.text("neutral_mesh");
   description.face_region = fields.text("face_region");
   description.coverage = fields.text("coverage");
+  description.importance = fields.text("importance");
   description.expressions = fields.names("expressions");
   if (!root.contains("maps")) return description;
   if (!root["maps"].is_object()) fields.fail("maps", "an object of maps by name", root["maps"]);

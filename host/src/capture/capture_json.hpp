@@ -22,6 +22,7 @@ struct CaptureJson {
   std::string neutral_mesh;
   std::string face_region;
   std::string coverage;
+  std::string importance;
   std::vector<std::string> expressions;
   std::map<std::string, Map> maps;
 };

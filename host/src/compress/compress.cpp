@@ -13,6 +13,7 @@
 #include "compress/code_bits.hpp"
 #include "compress/face.hpp"
 #include "compress/gram.hpp"
+#include "compress/importance.hpp"
 #include "compress/kmeans.hpp"
 #include "compress/map_bands.hpp"
 #include "compress/map_set.hpp"
@@ -115,6 +116,9 @@ class Compression {
     progress_.stage("reading meshes", 0);
     face_ = readFace(capture_, options_.region);
     requireExpressionTopology(capture_, face_.mesh, progress_);
+    const fs::path painted =
+        options_.importance.empty() ? capture_.importance.value_or("") : fs::path(options_.importance);
+    if (!painted.empty() && painted != "none") importance_.emplace(painted);
     clock_.book("meshes");
     masks_ = makeFaceMasks(capture_, face_, options_, progress_);
     report_.masks = masks_.masks.mask_count;
@@ -194,6 +198,13 @@ class Compression {
         map, stage, [&](int begin, int end) { return source.tiles(map, begin, end); }, visit);
   }
 
+  /// Puts the painted importance into the texel weights.
+  TileMasks weighed(TileMasks tiles, const OpenMap& map, int first_row) const {
+    const image::ImageShape& shape = map.samples->shape();
+    if (importance_) importance_->apply(tiles, shape.width, shape.height, first_row);
+    return tiles;
+  }
+
   GramSlots gramSlots() const {
     std::vector<bool> overlaps(static_cast<std::size_t>(report_.masks) * static_cast<std::size_t>(report_.masks),
                                false);
@@ -218,7 +229,9 @@ class Compression {
       GramAccumulator accumulator(context_, slots, expressions());
       for (OpenMap* map : group.maps) {
         std::uint64_t covered = 0;
-        const auto make_tiles = [&](int begin, int end) { return texel_masks_->tiles(*map->raster, begin, end); };
+        const auto make_tiles = [&](int begin, int end) {
+          return weighed(texel_masks_->tiles(*map->raster, begin, end), *map, begin);
+        };
         forEachBand(*map, "Gram matrices", make_tiles, [&](const MapBand& band) {
           accumulator.add(band.tiles, band.differences, band.shape, map->source->metric_weight);
           covered +=
@@ -299,8 +312,8 @@ class Compression {
     RefinementOptions refinement;
     refinement.most_sweeps = most_sweeps;
     RefinementProblem problem{weightSpace(), group.start, group.maps, {}, cellEnergy(group), 0};
-    problem.make_tiles = [](const OpenMap& map, int begin, int end) {
-      return raster::activeTiles(*map.raster, begin, end);
+    problem.make_tiles = [this](const OpenMap& map, int begin, int end) {
+      return weighed(raster::activeTiles(*map.raster, begin, end), map, begin);
     };
     problem.window_rows =
         planWindowRows(group.maps, problem.space, options_.memory_bytes, residentBytes(), context_.info());
@@ -440,6 +453,7 @@ class Compression {
   std::unique_ptr<raster::TexelMasks> texel_masks_;
   MapSet maps_;
   raster::WeightGrid grid_;
+  std::optional<Importance> importance_;
   std::vector<WeightGroup> groups_;
   std::vector<std::uint64_t> covered_texels_;  ///< of every map
 };

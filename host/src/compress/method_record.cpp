@@ -44,6 +44,8 @@ std::string methodJson(const CompressOptions& options, const CompressReport& rep
                  {"cluster_restarts", options.cluster_restarts},
                  {"seed", options.seed},
                  {"region", options.region},
+                 {"importance", options.importance},
+                 {"weights_per_map", options.weights_per_map},
                  {"unit", options.unit.value_or("")}};
   if (options.masks) record["masks"] = *options.masks;
   if (options.gutter) record["gutter"] = *options.gutter;
@@ -69,6 +71,8 @@ CompressOptions optionsFromMethodJson(const std::string& json_text, const std::s
     options.cluster_restarts = record.at("cluster_restarts").get<int>();
     options.seed = record.at("seed").get<std::uint64_t>();
     options.region = record.at("region").get<std::string>();
+    options.importance = record.at("importance").get<std::string>();
+    options.weights_per_map = record.at("weights_per_map").get<bool>();
     if (const std::string unit = record.at("unit").get<std::string>(); !unit.empty()) options.unit = unit;
     if (record.contains("masks")) options.masks = record["masks"].get<int>();
     if (record.contains("gutter")) options.gutter = record["gutter"].get<int>();

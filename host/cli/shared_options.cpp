@@ -3,6 +3,14 @@
 #include "option_types.hpp"
 
 namespace facezip::cli {
+namespace {
+
+PermutationSolver parseSolver(const std::string& name) {
+  if (name == "descent") return PermutationSolver::kDescent;
+  return name == "message-passing" ? PermutationSolver::kMessagePassing : PermutationSolver::kBest;
+}
+
+}  // namespace
 
 void addDeviceOption(CLI::App& command, std::string& selector) {
   command
@@ -47,7 +55,13 @@ void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
       ->excludes(radius)
       ->check(CLI::PositiveNumber);
   command.add_option("--mask-cutoff", options.mask_cutoff, "Mask weights below this are cut")->capture_default_str();
-  command.add_option("--restarts", options.restarts, "Random starts of the permutation search")->capture_default_str();
+  command
+      .add_option("--permutation-solver", arguments.permutation_solver,
+                  "descent: the paper's, from random starts; message-passing: with its bound; best: the better of both")
+      ->check(CLI::IsMember({"best", "descent", "message-passing"}))
+      ->capture_default_str();
+  command.add_option("--restarts", options.restarts, "Random starts of the permutation search by descent")
+      ->capture_default_str();
   command.add_option("--cluster-restarts", options.cluster_restarts, "Random starts of the clustering of each mask")
       ->capture_default_str();
   command.add_option("--seed", options.seed, "Seed of every random choice")->capture_default_str();
@@ -82,6 +96,7 @@ CompressOptions::Method parseMethod(const std::string& name) {
 CompressOptions parseCompressOptions(const CompressArguments& arguments) {
   CompressOptions options = arguments.options;
   options.method = parseMethod(arguments.method);
+  options.permutation_solver = parseSolver(arguments.permutation_solver);
   try {
     options.mask_radius = geometry::parseLength(arguments.mask_radius);
   } catch (const InputError& error) {

@@ -19,6 +19,7 @@ void addMapsOption(CLI::App& command, std::vector<std::string>& maps, const std:
 /// The texts behind CompressOptions, before they are parsed.
 struct CompressArguments {
   std::string method = "refined";
+  std::string permutation_solver = "best";
   std::string mask_radius = "3cm";
   int masks = 0;
   std::string unit;

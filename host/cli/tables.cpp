@@ -56,6 +56,19 @@ void printBytes(const Evaluation& evaluation) {
   }
 }
 
+void printPermutation(const CompressReport& report) {
+  if (!report.permutation_bound) {
+    fmt::print("permutation cost {:.4g} (not permuted)\n", report.permutation_cost);
+    return;
+  }
+  fmt::print("permutation cost {:.4g}, lower bound {:.4g}, gap {:.2f} %", report.permutation_cost,
+             *report.permutation_bound, 100.0 * report.permutationGap());
+  if (!report.restart_costs.empty()) {
+    fmt::print("; median of {} restarts {:.4g}", report.restart_costs.size(), report.permutation_cost_median);
+  }
+  fmt::print("\n");
+}
+
 }  // namespace
 
 void printCompressReport(const CompressReport& report) {
@@ -63,12 +76,7 @@ void printCompressReport(const CompressReport& report) {
              report.covered_texels);
   fmt::print("mask tails cut: {:.2f} % of a vertex's weight on average, {:.1f} % at most; {:.1f} masks at a vertex\n",
              100.0 * report.cut_mass_mean, 100.0 * report.cut_mass_max, report.active_masks_mean);
-  if (!report.restart_costs.empty()) {
-    fmt::print("permutation cost {:.4g}, median of {} restarts {:.4g}\n", report.permutation_cost,
-               report.restart_costs.size(), report.permutation_cost_median);
-  } else {
-    fmt::print("permutation cost {:.4g} (not permuted)\n", report.permutation_cost);
-  }
+  printPermutation(report);
   if (report.refinement_errors.size() > 1 && report.refinement_errors.front() > 0.0) {
     fmt::print("refining: squared error");
     for (const double error : report.refinement_errors) {

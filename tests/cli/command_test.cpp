@@ -55,6 +55,9 @@ TEST_F(Command, CompressIsQuietInAPipeAndReports) {
   EXPECT_GT(report["masks"].get<int>(), 3);
   EXPECT_GT(report["seconds"]["total"].get<double>(), 0.0);
   EXPECT_EQ(report["permutation"]["restart_costs"].size(), 20u);
+  EXPECT_GT(report["permutation"]["bound"].get<double>(), 0.0);
+  EXPECT_LE(report["permutation"]["bound"].get<double>(), report["permutation"]["cost"].get<double>());
+  EXPECT_LE(report["permutation"]["cost"].get<double>(), report["permutation"]["median_cost"].get<double>());
 }
 
 TEST_F(Command, PeakMemoryDoesNotGrowWithTheHeightOfTheImage) {

@@ -16,6 +16,13 @@
 
 namespace facezip {
 
+/// How the permutation is found. Its lower bound is the same for all, and takes the time of kMessagePassing.
+enum class PermutationSolver {
+  kBest,            ///< the better of the two below
+  kDescent,         ///< coordinate descent from random starts (FaceZip, section 3.1)
+  kMessagePassing,  ///< message passing between pairs and triangles of masks, greedy starts, branch and bound
+};
+
 struct CompressOptions {
   /// How difference textures and weights are found.
   enum class Method {
@@ -31,9 +38,10 @@ struct CompressOptions {
   int weight_scale = 8;  ///< texels of the largest map per weight cell, per axis; 1 to 64
   /// Poisson-disk radius of the mask samples; bare numbers are in the mesh's unit. The paper's 3 cm.
   geometry::Length mask_radius{3.0, geometry::LengthUnit::kCentimetre};
-  std::optional<int> masks;                 ///< instead of the radius: exactly this many masks
-  double mask_cutoff = 0.01;                ///< mask weights below this are cut, so that a fragment has compact support
-  int restarts = 100;                       ///< of the permutation search, >= 1
+  std::optional<int> masks;   ///< instead of the radius: exactly this many masks
+  double mask_cutoff = 0.01;  ///< mask weights below this are cut, so that a fragment has compact support
+  PermutationSolver permutation_solver = PermutationSolver::kBest;
+  int restarts = 100;                       ///< of coordinate descent in the permutation search, >= 1
   int cluster_restarts = 64;                ///< of k-means, >= 1
   std::uint64_t seed = 1;                   ///< of every random choice
   std::uint64_t memory_bytes = 2ull << 30;  ///< bound on what the process keeps resident, host and device together
@@ -58,8 +66,12 @@ struct CompressReport {
   double cut_mass_max = 0.0;         ///< and largest
   double active_masks_mean = 0.0;    ///< masks above zero at a vertex, after the cut
   int overlapping_pairs = 0;
-  double permutation_cost = 0.0;                 ///< Eq. 3, each unordered pair once, in (1/255)^2
-  double permutation_cost_median = 0.0;          ///< median of the restarts' final costs
+  double permutation_cost = 0.0;   ///< Eq. 3, each unordered pair once, in (1/255)^2
+  std::string permutation_solver;  ///< which found it: "descent" or "message-passing"; "" if not permuted
+  /// Lower bound of the cost of every permutation, at most permutation_cost; none where clusters were not permuted.
+  std::optional<double> permutation_bound;
+  std::vector<double> permutation_bounds;        ///< pairs of masks alone, then after each iteration of message passing
+  double permutation_cost_median = 0.0;          ///< median of the restarts' final costs; 0 without restarts
   std::vector<double> restart_costs;             ///< final cost of every restart
   std::vector<std::vector<double>> convergence;  ///< cost after each sweep, per restart
   /// Of every map whose difference textures were fitted (not with the paper's method): RMSE over the covered texels,
@@ -76,6 +88,9 @@ struct CompressReport {
   std::uint64_t package_disk_bytes = 0;
   std::uint64_t peak_memory_bytes = 0;  ///< largest resident size of the process so far
   std::string device;
+
+  /// How far the cost may lie above the lowest: (cost - bound) / cost, 0 to 1; 0 where the cost is 0 or has no bound.
+  double permutationGap() const;
 };
 
 /// Compresses `capture` into the directory `package`, which appears whole or not at all; an earlier package there is

@@ -19,7 +19,7 @@
 #include "compress/map_set.hpp"
 #include "compress/method_record.hpp"
 #include "compress/package_output.hpp"
-#include "compress/permutation_search.hpp"
+#include "compress/permutation_solver.hpp"
 #include "compress/refinement.hpp"
 #include "compress/seam_cost.hpp"
 #include "compress/stage_clock.hpp"
@@ -279,13 +279,17 @@ class Compression {
 
   Permutation choosePermutation(const SeamTables& tables) {
     if (options_.method == CompressOptions::Method::kNoPermutation) return identityPermutation(tables);
-    PermutationSearchOptions search;
-    search.restarts = options_.restarts;
-    search.seed = options_.seed;
-    const PermutationSearch found = searchPermutation(tables, search);
-    report_.convergence = found.sweep_costs;
-    report_.restart_costs = found.finalCosts();
-    report_.permutation_cost_median = found.medianFinalCost();
+    PermutationSolverOptions solver;
+    solver.solver = options_.permutation_solver;
+    solver.descent.restarts = options_.restarts;
+    solver.descent.seed = options_.seed;
+    const PermutationSolution found = solvePermutation(tables, solver);
+    report_.permutation_solver = found.by_descent ? "descent" : "message-passing";
+    report_.permutation_bound = found.bound;
+    report_.permutation_bounds = found.bounds;
+    report_.convergence = found.descent.sweep_costs;
+    report_.restart_costs = found.descent.finalCosts();
+    if (!report_.restart_costs.empty()) report_.permutation_cost_median = found.descent.medianFinalCost();
     return found.best;
   }
 
@@ -459,6 +463,11 @@ class Compression {
 };
 
 }  // namespace
+
+double CompressReport::permutationGap() const {
+  if (!permutation_bound || permutation_cost <= 0.0) return 0.0;
+  return (permutation_cost - *permutation_bound) / permutation_cost;
+}
 
 CompressReport compressCapture(const Capture& capture, const fs::path& package, const CompressOptions& options,
                                const Device& device, Progress& progress) {

@@ -14,11 +14,30 @@ constexpr std::pair<Method, const char*> kMethods[] = {{Method::kRefined, "refin
                                                        {Method::kPaper, "paper"},
                                                        {Method::kNoPermutation, "no-permutation"}};
 
+constexpr std::pair<PermutationSolver, const char*> kSolvers[] = {
+    {PermutationSolver::kBest, "best"},
+    {PermutationSolver::kDescent, "descent"},
+    {PermutationSolver::kMessagePassing, "message-passing"}};
+
 const char* methodName(Method method) {
   for (const auto& [value, name] : kMethods) {
     if (value == method) return name;
   }
   return "";
+}
+
+const char* solverName(PermutationSolver solver) {
+  for (const auto& [value, name] : kSolvers) {
+    if (value == solver) return name;
+  }
+  return "";
+}
+
+PermutationSolver solverOf(const std::string& name, const std::string& file) {
+  for (const auto& [value, known] : kSolvers) {
+    if (name == known) return value;
+  }
+  throw InputError({file, "method.permutation_solver", "a solver of this facezip", name, "compress the capture again"});
 }
 
 Method methodOf(const std::string& name, const std::string& file) {
@@ -40,6 +59,7 @@ std::string methodJson(const CompressOptions& options, const CompressReport& rep
                  {"weight_scale", options.weight_scale},
                  {"mask_radius", lengthText(options.mask_radius)},
                  {"mask_cutoff", options.mask_cutoff},
+                 {"permutation_solver", solverName(options.permutation_solver)},
                  {"restarts", options.restarts},
                  {"cluster_restarts", options.cluster_restarts},
                  {"seed", options.seed},
@@ -67,6 +87,7 @@ CompressOptions optionsFromMethodJson(const std::string& json_text, const std::s
     options.weight_scale = record.at("weight_scale").get<int>();
     options.mask_radius = geometry::parseLength(record.at("mask_radius").get<std::string>());
     options.mask_cutoff = record.at("mask_cutoff").get<double>();
+    options.permutation_solver = solverOf(record.at("permutation_solver").get<std::string>(), file);
     options.restarts = record.at("restarts").get<int>();
     options.cluster_restarts = record.at("cluster_restarts").get<int>();
     options.seed = record.at("seed").get<std::uint64_t>();

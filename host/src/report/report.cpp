@@ -23,6 +23,20 @@ json secondsJson(const std::vector<std::pair<std::string, double>>& seconds) {
   return object;
 }
 
+json permutationJson(const CompressReport& report) {
+  json object = {{"cost", report.permutation_cost},
+                 {"median_cost", report.permutation_cost_median},
+                 {"restart_costs", report.restart_costs},
+                 {"convergence", report.convergence}};
+  if (report.permutation_bound) {
+    object["solver"] = report.permutation_solver;
+    object["bound"] = *report.permutation_bound;
+    object["gap"] = report.permutationGap();
+    object["bound_convergence"] = report.permutation_bounds;
+  }
+  return object;
+}
+
 }  // namespace
 
 std::string toJson(const CompressReport& report) {
@@ -38,11 +52,7 @@ std::string toJson(const CompressReport& report) {
       {"mask_cut",
        {{"mean", report.cut_mass_mean}, {"max", report.cut_mass_max}, {"active_masks", report.active_masks_mean}}},
       {"overlapping_pairs", report.overlapping_pairs},
-      {"permutation",
-       {{"cost", report.permutation_cost},
-        {"median_cost", report.permutation_cost_median},
-        {"restart_costs", report.restart_costs},
-        {"convergence", report.convergence}}},
+      {"permutation", permutationJson(report)},
       {"rmse", json::object()},
       {"refinement", {{"squared_errors", report.refinement_errors}}},
       {"band_rows", report.band_rows},

@@ -45,7 +45,7 @@
 #ifndef CODE_BITS
 #define CODE_BITS 8
 #endif
-#ifndef TILE_ROW_BYTES
+#ifndef TILE_ROW_BYTES  // of 8-bit samples and codes
 #define TILE_CODES_OFFSET (16 * CHANNELS)
 #define TILE_ROW_BYTES (16 * CHANNELS * (1 + DIFFERENCES))
 #endif

@@ -158,7 +158,7 @@ TEST_F(Command, EvaluateReportsWhatTheSchemaSays) {
 TEST_F(Command, InfoDevicesVersionAndHelp) {
   const std::string info = runFacezip("info " + quoted(package())).out;
   EXPECT_THAT(info, HasSubstr("6 expressions, 4 difference textures"));
-  EXPECT_THAT(info, HasSubstr("sRGB, differences in 8 bits, 8 texels to a weight texel"));
+  EXPECT_THAT(info, HasSubstr("3 channels, 8-bit, differences in 8 bits, 8 texels to a weight texel"));
   EXPECT_THAT(info, HasSubstr("  weights: "));
   // The same with a second set: sets are known by the maps that use them.
   const test::TemporaryDirectory folder;

@@ -78,6 +78,19 @@ void blendKernel(benchmark::State& state, int channels, image::SampleType type, 
   setBandwidthCounters(state, scene.bytes());
 }
 
+/// The same, with float32 values before rounding in place of samples.
+void blendValuesKernel(benchmark::State& state, int channels, image::SampleType type) {
+  Scene scene(static_cast<int>(state.range(0)), channels, type, /* difference_bits= */ 8);
+  constexpr auto kForm = blend::FrameForm::kValues;
+  const cl::Buffer frame = benchDevice().allocate(scene.textures.frameBytes(kForm), CL_MEM_WRITE_ONLY, "values");
+  measure(state, [&] {
+    scene.textures.enqueue(scene.weights.weights(), frame, kForm);
+    benchDevice().finish();
+  });
+  const double widened = static_cast<double>(scene.textures.frameBytes(kForm) - scene.textures.frameBytes());
+  setBandwidthCounters(state, scene.bytes() + widened);
+}
+
 /// A frame as a caller gets it: new weights of 52 expressions, the kernel, rows in the caller's memory.
 void wholeFrame(benchmark::State& state, int channels, image::SampleType type) {
   Scene scene(static_cast<int>(state.range(0)), channels, type, /* difference_bits= */ 8);
@@ -125,6 +138,10 @@ BENCHMARK_CAPTURE(blendKernel, rgb_float, 3, image::SampleType::kFloat32)
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(blendKernel, rgb8_differences16, 3, image::SampleType::kUint8, 16)
+    ->Arg(2048)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(blendValuesKernel, rgb8, 3, image::SampleType::kUint8)
     ->Arg(2048)
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond);

@@ -17,10 +17,12 @@
 //                          codes [C][channel][16] CODE, then padding; both aligned for vector loads; tiles row-major
 //           weights   in   [cell / 16][C][16]         float  weight_blend.cl's output
 //           encoding  in   [2][C][channels]           float  scale_ic in steps of a sample, then zero_ic
-//           frame     out  [8 * tile rows][16 * tiles_x][channels] SAMPLE  interleaved
+//           frame     out  [8 * tile rows][16 * tiles_x][channels] FRAME  interleaved
 // Defines   CHANNELS 1..4, DIFFERENCES 1..8, SCALE s >= 1, LANES 16 (CPU) or 1 (GPU),
 //           SAMPLE_TYPE 0 uchar, 1 ushort, 2 float; CODE_BITS 8 or 16; TILE_CODES_OFFSET, TILE_ROW_BYTES
-// Rounding  integers: half up, clamped to the type; floats: neither, and I_0 is copied where the sum is 0
+//           VALUES 0: FRAME is SAMPLE; 1: FRAME is float, T in 1/255 of full scale as it is before rounding
+// Rounding  integers: half up, clamped to the type; floats: neither, and I_0 is copied where the sum is 0;
+//           values: neither, exact where the sum is 0 in 8 bits
 
 #ifndef LANES
 #define LANES 16
@@ -37,10 +39,13 @@
 #ifndef SAMPLE_TYPE
 #define SAMPLE_TYPE 0
 #endif
+#ifndef VALUES
+#define VALUES 0
+#endif
 #ifndef CODE_BITS
 #define CODE_BITS 8
 #endif
-#ifndef TILE_ROW_BYTES
+#ifndef TILE_ROW_BYTES  // of 8-bit samples and codes
 #define TILE_CODES_OFFSET (16 * CHANNELS)
 #define TILE_ROW_BYTES (16 * CHANNELS * (1 + DIFFERENCES))
 #endif
@@ -70,23 +75,37 @@ typedef VECTOR(CODE) codes;
 #if SAMPLE_TYPE == 0
 #define SAMPLE uchar
 #define SAMPLE_MAX 255.0f
+#define UNIT_255 1.0f  // a step of a sample in 1/255 of full scale
 #elif SAMPLE_TYPE == 1
 #define SAMPLE ushort
 #define SAMPLE_MAX 65535.0f
+#define UNIT_255 (1.0f / 257.0f)
 #else
 #define SAMPLE float
+#define UNIT_255 255.0f
 #endif
 typedef VECTOR(SAMPLE) samples;
 
+#if VALUES
+#define FRAME float
+#define FRAME_TYPE 2
+#else
+#define FRAME SAMPLE
+#define FRAME_TYPE SAMPLE_TYPE
+#endif
+typedef VECTOR(FRAME) frames;
+
 // What a sample becomes before it is narrowed: kept wide so that 8-bit channels can be packed by shifts.
-#if SAMPLE_TYPE == 2
+#if FRAME_TYPE == 2
 typedef floats results;
 #else
 typedef VECTOR(uint) results;
 #endif
 
 inline results finish(const floats neutral, const floats sum) {
-#if SAMPLE_TYPE == 2
+#if VALUES
+  return (neutral + sum) * UNIT_255;
+#elif SAMPLE_TYPE == 2
   return sum == (floats)(0.0f) ? neutral : neutral + sum;  // -0 and denormals of the neutral survive
 #else
   // Not convert_*_sat_rte: it costs a third of the whole blend on PoCL.
@@ -95,21 +114,21 @@ inline results finish(const floats neutral, const floats sum) {
 }
 
 // Writes 16 texels (or one) of CHANNELS interleaved samples. Little-endian devices, as every OpenCL device today is.
-inline void store(global SAMPLE* out, const results* value) {
+inline void store(global FRAME* out, const results* value) {
 #if LANES == 1
 #pragma unroll
-  for (int c = 0; c < CHANNELS; ++c) out[c] = (SAMPLE)value[c];
-#elif CHANNELS == 1 && SAMPLE_TYPE == 2
+  for (int c = 0; c < CHANNELS; ++c) out[c] = (FRAME)value[c];
+#elif CHANNELS == 1 && FRAME_TYPE == 2
   *(global float16*)out = value[0];
 #elif CHANNELS == 1
-  *(global samples*)out = JOIN(convert_, VECTOR(SAMPLE))(value[0]);
-#elif CHANNELS == 2 && SAMPLE_TYPE == 0
+  *(global frames*)out = JOIN(convert_, VECTOR(FRAME))(value[0]);
+#elif CHANNELS == 2 && FRAME_TYPE == 0
   *(global ushort16*)out = convert_ushort16(value[0] | value[1] << 8);
-#elif CHANNELS == 2 && SAMPLE_TYPE == 1
+#elif CHANNELS == 2 && FRAME_TYPE == 1
   *(global uint16*)out = value[0] | value[1] << 16;
-#elif CHANNELS == 4 && SAMPLE_TYPE == 0
+#elif CHANNELS == 4 && FRAME_TYPE == 0
   *(global uint16*)out = value[0] | value[1] << 8 | value[2] << 16 | value[3] << 24;
-#elif CHANNELS == 3 && SAMPLE_TYPE == 0
+#elif CHANNELS == 3 && FRAME_TYPE == 0
   // Texels as RGB0 words; then word k of the 12 that leave joins the ends of two neighbours. Four lanes are spare.
   // Word by word out: PoCL merges the stores. shuffle2 would be three times slower than all the rest.
   const uint16 texels = value[0] | value[1] << 8 | value[2] << 16;
@@ -130,9 +149,9 @@ inline void store(global SAMPLE* out, const results* value) {
   to[10] = words.sa;
   to[11] = words.sb;
 #else
-  SAMPLE lanes[CHANNELS][16];
+  FRAME lanes[CHANNELS][16];
 #pragma unroll
-  for (int c = 0; c < CHANNELS; ++c) vstore16(JOIN(convert_, VECTOR(SAMPLE))(value[c]), 0, lanes[c]);
+  for (int c = 0; c < CHANNELS; ++c) vstore16(JOIN(convert_, VECTOR(FRAME))(value[c]), 0, lanes[c]);
   for (int x = 0; x < 16; ++x) {
 #pragma unroll
     for (int c = 0; c < CHANNELS; ++c) out[x * CHANNELS + c] = lanes[c][x];
@@ -178,7 +197,7 @@ inline void interpolate_columns(global const float* restrict weights, const int 
 }
 
 kernel void blend(global const uchar* restrict textures, global const float* restrict weights,
-                  global const float* restrict encoding, global SAMPLE* restrict frame, const int tiles_x,
+                  global const float* restrict encoding, global FRAME* restrict frame, const int tiles_x,
                   const ulong tile_count, const int first_tile_row, const int cell_columns, const int cell_rows) {
   const ulong item = get_global_id(0);
   const ulong tile = item / (16 / LANES);
@@ -199,7 +218,7 @@ kernel void blend(global const uchar* restrict textures, global const float* res
   interpolate_columns(weights, tile_x * TILE_WIDTH, lane, first_cell_row, cell_columns, cell_rows, h);
 
   global const uchar* texels = textures + tile * (TILE_ROWS * TILE_ROW_BYTES);
-  global SAMPLE* out = frame + ((ulong)tile_y * TILE_ROWS * tiles_x + tile_x) * (TILE_WIDTH * CHANNELS) + lane * CHANNELS;
+  global FRAME* out = frame + ((ulong)tile_y * TILE_ROWS * tiles_x + tile_x) * (TILE_WIDTH * CHANNELS) + lane * CHANNELS;
 #pragma unroll
   for (int row = 0; row < TILE_ROWS; ++row) {
     const int position = phase + 2 * row;

@@ -159,7 +159,20 @@ TEST_F(Command, EvaluateReportsWhatTheSchemaSays) {
 }
 
 TEST_F(Command, InfoDevicesVersionAndHelp) {
-  EXPECT_THAT(runFacezip("info " + quoted(package())).out, HasSubstr("6 expressions, 4 difference textures"));
+  const std::string info = runFacezip("info " + quoted(package())).out;
+  EXPECT_THAT(info, HasSubstr("6 expressions, 4 difference textures"));
+  EXPECT_THAT(info, HasSubstr("3 channels, 8-bit, differences in 8 bits, 8 texels to a weight texel"));
+  EXPECT_THAT(info, HasSubstr("  weights: "));
+  // The same with a second set: sets are known by the maps that use them.
+  const test::TemporaryDirectory folder;
+  fs::copy(package(), folder / "package", fs::copy_options::recursive);
+  json description = readJson(package() / "package.json");
+  description["weights"].push_back(description["weights"][0]);
+  description["maps"][1]["weights"] = 1;
+  std::ofstream(folder / "package/package.json") << description;
+  const std::string sets = runFacezip("info " + quoted(folder / "package")).out;
+  EXPECT_THAT(sets, HasSubstr("  weights of albedo: "));
+  EXPECT_THAT(sets, HasSubstr("  weights of normal: "));
   EXPECT_THAT(runFacezip("devices").out, HasSubstr("0:0"));
   EXPECT_THAT(runFacezip("--version").out, HasSubstr("facezip "));
   for (const char* command : {"synth", "compress", "reconstruct", "blend", "evaluate", "info", "devices", "demo"}) {

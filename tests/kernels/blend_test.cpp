@@ -130,6 +130,18 @@ struct Scene {
     return frame;
   }
 
+  std::vector<float> blendValues(int begin, int end, float factor = 1.0f,
+                                 KernelVariant variant = KernelVariant::kAuto) const {
+    blend::TextureRows on_device = load(begin, end, variant);
+    constexpr std::size_t kCanary = 16;
+    std::vector<float> values(static_cast<std::size_t>((end - begin) * size.width * size.channels) + kCanary, -7.5f);
+    on_device.blendValues(uploadWeights(factor), std::span(values).first(values.size() - kCanary));
+    for (std::size_t s = values.size() - kCanary; s < values.size(); ++s)
+      EXPECT_EQ(values[s], -7.5f) << "written past the frame";
+    values.resize(values.size() - kCanary);
+    return values;
+  }
+
   double sampleAt(const std::vector<std::byte>& frame, std::size_t sample) const {
     if (size.type == SampleType::kUint8) return static_cast<double>(frame[sample]);
     if (size.type == SampleType::kUint16) {
@@ -197,6 +209,40 @@ TEST_P(Blend, ZeroWeightsGiveTheNeutralBitForBit) {
   EXPECT_EQ(scene.blendRows(0, size.height, 0.0f, variant), scene.neutral);
 }
 
+TEST_P(Blend, ValuesAreTheReferenceNeitherRoundedNorClamped) {
+  const auto& [size, variant] = GetParam();
+  const Scene scene(size);
+  const std::vector<double> weights(scene.weights.begin(), scene.weights.end());
+  const std::vector<double> expected = reference::blendFrame(scene.textures, weights, scene.columns, scene.rows);
+  const std::vector<float> values = scene.blendValues(0, size.height, 1.0f, variant);
+  const double unit = 255.0 / scene.textures.full_scale;
+  ASSERT_EQ(values.size(), expected.size());
+  double lowest = 0.0, highest = 0.0;
+  for (std::size_t s = 0; s < expected.size(); ++s) {
+    const double value = static_cast<double>(values[s]);
+    ASSERT_NEAR(value, expected[s] * unit, 3e-6 * 255.0) << s;
+    lowest = std::min(lowest, value);
+    highest = std::max(highest, value);
+  }
+  if (size.width * size.height < 100) return;
+  EXPECT_LT(lowest, -1.0);
+  EXPECT_GT(highest, size.type == SampleType::kFloat32 ? 254.0 : 256.0);
+}
+
+TEST_P(Blend, ValuesOfZeroWeightsAreTheNeutral) {
+  const auto& [size, variant] = GetParam();
+  const Scene scene(size);
+  const std::vector<float> values = scene.blendValues(0, size.height, 0.0f, variant);
+  for (std::size_t s = 0; s < values.size(); ++s) {
+    const double expected = scene.textures.neutral[s] * 255.0 / scene.textures.full_scale;
+    if (size.type == SampleType::kUint8) {
+      ASSERT_EQ(static_cast<double>(values[s]), expected) << s;
+    } else {
+      ASSERT_NEAR(static_cast<double>(values[s]), expected, 3e-7 * 255.0) << s;
+    }
+  }
+}
+
 TEST_P(Blend, BandsHaveTheBitsOfTheWhole) {
   const auto& [size, variant] = GetParam();
   const Scene scene(size);
@@ -207,6 +253,10 @@ TEST_P(Blend, BandsHaveTheBitsOfTheWhole) {
     bands.insert(bands.end(), band.begin(), band.end());
   }
   EXPECT_EQ(bands, whole);
+  if (size.height <= 24) return;
+  std::vector<float> values = scene.blendValues(0, size.height, 1.0f, variant);
+  values.erase(values.begin(), values.begin() + std::ptrdiff_t{24} * size.width * size.channels);
+  EXPECT_EQ(scene.blendValues(24, size.height, 1.0f, variant), values);
 }
 
 INSTANTIATE_TEST_SUITE_P(

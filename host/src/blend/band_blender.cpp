@@ -20,6 +20,15 @@ struct BandBlender::State {
   MapReader reader;
   std::optional<TextureRows> textures;  // grows to the largest band that was asked for
   int most_rows = 0;
+
+  /// Sums the weight maps that the loaded rows need.
+  const cl::Buffer& blendWeights(std::span<const float> beta) {
+    assert(textures);
+    requireWeights(beta, expressions);
+    const auto [first, last] = cellRowsOf(textures->begin(), textures->end(), shape.weight_scale, weights->grid().rows);
+    weights->blend(beta, first, last);
+    return weights->weights();
+  }
 };
 
 BandBlender::BandBlender(const Package& package, int map_index, const WeightSets& weights, const Device& device) {
@@ -55,13 +64,13 @@ void BandBlender::loadRows(int begin, int end) {
 }
 
 void BandBlender::blend(std::span<const float> beta, std::span<std::byte> out) {
-  assert(state_->textures);
-  requireWeights(beta, state_->expressions);
-  const TextureRows& textures = *state_->textures;
-  const auto [first, last] =
-      cellRowsOf(textures.begin(), textures.end(), state_->shape.weight_scale, state_->weights->grid().rows);
-  state_->weights->blend(beta, first, last);
-  state_->textures->blend(state_->weights->weights(), out);
+  const cl::Buffer& weights = state_->blendWeights(beta);
+  state_->textures->blend(weights, out);
+}
+
+void BandBlender::blendValues(std::span<const float> beta, std::span<float> out) {
+  const cl::Buffer& weights = state_->blendWeights(beta);
+  state_->textures->blendValues(weights, out);
 }
 
 WeightSets loadWeightMaps(const Package& package, const Device& device) {

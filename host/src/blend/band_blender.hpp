@@ -23,7 +23,8 @@ class BandBlender {
   BandBlender(const Package& package, int map_index, const WeightSets& weights, const Device& device);
   ~BandBlender();
 
-  /// Rows, a multiple of rowStep(), whose textures and frame take at most `bytes` on host and device together.
+  /// Rows, a multiple of rowStep(), whose textures and frame of blend() take at most `bytes` on host and device
+  /// together; values take 4 bytes a sample in place of the neutral's.
   int rowsWithin(std::size_t bytes) const;
   /// Bands begin at a multiple of this.
   static constexpr int rowStep() { return 8; }
@@ -36,6 +37,12 @@ class BandBlender {
   /// beta  N finite weights, in the package's order
   /// out   (end - begin) x width x channels samples of the neutral's type, interleaved
   void blend(std::span<const float> beta, std::span<std::byte> out);
+
+  /// Blends the loaded rows as a renderer sees them, before they are rounded to samples: T of docs/package_format.md in
+  /// units of 1/255 of full scale. Not clamped: values may lie outside 0 to 255.
+  /// beta  N finite weights, in the package's order
+  /// out   (end - begin) x width x channels, interleaved
+  void blendValues(std::span<const float> beta, std::span<float> out);
 
  private:
   struct State;

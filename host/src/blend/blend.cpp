@@ -49,12 +49,12 @@ std::vector<float> encodingOf(const TextureShape& shape) {
   return encoding;
 }
 
-std::string definesOf(const TextureShape& shape, bool gpu) {
+std::string definesOf(const TextureShape& shape, bool gpu, FrameForm form) {
   return fmt::format(
       "-D LANES={} -D CHANNELS={} -D DIFFERENCES={} -D SCALE={} -D SAMPLE_TYPE={} -D CODE_BITS={} "
-      "-D TILE_CODES_OFFSET={} -D TILE_ROW_BYTES={}",
+      "-D TILE_CODES_OFFSET={} -D TILE_ROW_BYTES={} -D VALUES={}",
       gpu ? 1 : kTileWidth, shape.channels, shape.differences, shape.weight_scale, static_cast<int>(shape.sample_type),
-      shape.difference_bits, shape.tileCodesOffset(), shape.tileRowBytes());
+      shape.difference_bits, shape.tileCodesOffset(), shape.tileRowBytes(), form == FrameForm::kValues ? 1 : 0);
 }
 
 int floorDivide(int numerator, int denominator) {
@@ -82,14 +82,21 @@ TextureRows::TextureRows(device::DeviceContext& context, TextureShape shape, int
       most_rows_(device::roundUp(size(most_rows), kTileRows)) {
   assert(shape_.scale.size() == size(shape_.differences) * size(shape_.channels));
   assert(shape_.zero.size() == shape_.scale.size());
-  const bool gpu = context.resolve(variant) == device::KernelVariant::kGpu;
-  items_per_tile_ = gpu ? kTileWidth : 1;
-  kernel_ = context.kernel("blend.cl", "blend", definesOf(shape_, gpu));
-  local_size_ = context.workGroupSize(kernel_, gpu ? 64 : 16);
+  gpu_ = context.resolve(variant) == device::KernelVariant::kGpu;
   textures_ = context.allocate(most_rows_ / kTileRows * shape_.tilesBytes(), CL_MEM_READ_ONLY, "the textures of a map");
   encoding_ = context.upload(encodingOf(shape_), "the encoding of difference textures");
-  kernel_.setArg(0, textures_);
-  kernel_.setArg(2, encoding_);
+  output(FrameForm::kSamples);
+}
+
+TextureRows::Output& TextureRows::output(FrameForm form) {
+  Output& output = outputs_[static_cast<std::size_t>(form)];
+  if (output.kernel() == nullptr) {
+    output.kernel = context_.kernel("blend.cl", "blend", definesOf(shape_, gpu_, form));
+    output.local_size = context_.workGroupSize(output.kernel, gpu_ ? 64 : 16);
+    output.kernel.setArg(0, textures_);
+    output.kernel.setArg(2, encoding_);
+  }
+  return output;
 }
 
 void TextureRows::setRows(int begin, int end) {
@@ -122,55 +129,71 @@ void TextureRows::load(int first, int rows, std::span<const std::byte> neutral,
                  size((first - begin_) / kTileRows) * shape_.tilesBytes());
 }
 
-std::size_t TextureRows::paddedRowBytes() const {
-  return size(shape_.tilesAcross()) * kTileWidth * size(shape_.channels) * image::sampleBytes(shape_.sample_type);
+std::size_t TextureRows::frameSampleBytes(FrameForm form) const {
+  return form == FrameForm::kValues ? sizeof(float) : image::sampleBytes(shape_.sample_type);
 }
 
-cl::Event TextureRows::enqueue(const cl::Buffer& weights, const cl::Buffer& frame) {
+std::size_t TextureRows::paddedRowBytes(FrameForm form) const {
+  return size(shape_.tilesAcross()) * kTileWidth * size(shape_.channels) * frameSampleBytes(form);
+}
+
+cl::Event TextureRows::enqueue(const cl::Buffer& weights, const cl::Buffer& frame, FrameForm form) {
+  auto& [kernel, local_size, unused] = output(form);
   const std::size_t tiles = size(tileRowCount()) * size(shape_.tilesAcross());
-  kernel_.setArg(1, weights);
-  kernel_.setArg(3, frame);
-  kernel_.setArg(4, static_cast<cl_int>(shape_.tilesAcross()));
-  kernel_.setArg(5, static_cast<cl_ulong>(tiles));
-  kernel_.setArg(6, static_cast<cl_int>(begin_ / kTileRows));
-  kernel_.setArg(7, static_cast<cl_int>(cell_columns_));
-  kernel_.setArg(8, static_cast<cl_int>(cell_rows_));
-  return context_.run(kernel_, cl::NDRange(device::roundUp(tiles * items_per_tile_, local_size_)),
-                      cl::NDRange(local_size_));
+  const std::size_t items = tiles * (gpu_ ? kTileWidth : 1);
+  kernel.setArg(1, weights);
+  kernel.setArg(3, frame);
+  kernel.setArg(4, static_cast<cl_int>(shape_.tilesAcross()));
+  kernel.setArg(5, static_cast<cl_ulong>(tiles));
+  kernel.setArg(6, static_cast<cl_int>(begin_ / kTileRows));
+  kernel.setArg(7, static_cast<cl_int>(cell_columns_));
+  kernel.setArg(8, static_cast<cl_int>(cell_rows_));
+  return context_.run(kernel, cl::NDRange(device::roundUp(items, local_size)), cl::NDRange(local_size));
 }
 
 /// True when the kernel may write into the caller's memory: no padding in the frame, vector stores aligned, and a
 /// device that shares the host's memory.
-bool TextureRows::fitsFrame(std::span<const std::byte> out) const {
+bool TextureRows::fitsFrame(std::span<const std::byte> out, FrameForm form) const {
   constexpr std::size_t kWidestStore = 64;  // float16 and uint16; three 8-bit channels go out in uchar16
-  const bool narrow = shape_.channels == 3 && shape_.sample_type == image::SampleType::kUint8;
+  const bool narrow = shape_.channels == 3 && frameSampleBytes(form) == 1;
   const std::size_t alignment = narrow ? kTileWidth : kWidestStore;
-  return context_.info().type == DeviceInfo::Type::kCpu && out.size() == frameBytes() &&
+  return context_.info().type == DeviceInfo::Type::kCpu && out.size() == frameBytes(form) &&
          reinterpret_cast<std::uintptr_t>(out.data()) % alignment == 0;
 }
 
 void TextureRows::blend(const cl::Buffer& weights, std::span<std::byte> out) {
-  assert(out.size() == size(end_ - begin_) * shape_.rowBytes());
+  blendInto(weights, out, FrameForm::kSamples);
+}
+
+void TextureRows::blendValues(const cl::Buffer& weights, std::span<float> out) {
+  blendInto(weights, std::as_writable_bytes(out), FrameForm::kValues);
+}
+
+void TextureRows::blendInto(const cl::Buffer& weights, std::span<std::byte> out, FrameForm form) {
+  const std::size_t row_bytes = size(shape_.width) * size(shape_.channels) * frameSampleBytes(form);
+  assert(out.size() == size(end_ - begin_) * row_bytes);
   try {
-    if (fitsFrame(out)) {
+    if (fitsFrame(out, form)) {
       const cl::Buffer frame(context_.context(), CL_MEM_WRITE_ONLY | CL_MEM_USE_HOST_PTR, out.size(), out.data());
-      enqueue(weights, frame);
+      enqueue(weights, frame, form);
       // Mapping is what makes the result visible at `out`; on a device that shares memory it copies nothing.
       void* mapped = context_.queue().enqueueMapBuffer(frame, CL_TRUE, CL_MAP_READ, 0, out.size());
       context_.queue().enqueueUnmapMemObject(frame, mapped);
       context_.finish();
       return;
     }
-    if (frame_() == nullptr) {
-      frame_ = context_.allocate(most_rows_ * paddedRowBytes(), CL_MEM_WRITE_ONLY | CL_MEM_ALLOC_HOST_PTR, "a frame");
+    cl::Buffer& frame = output(form).frame;
+    const std::size_t padded = paddedRowBytes(form);
+    if (frame() == nullptr) {
+      frame = context_.allocate(most_rows_ * padded, CL_MEM_WRITE_ONLY | CL_MEM_ALLOC_HOST_PTR, "a frame");
     }
-    enqueue(weights, frame_);
-    const void* mapped = context_.queue().enqueueMapBuffer(frame_, CL_TRUE, CL_MAP_READ, 0, frameBytes());
+    enqueue(weights, frame, form);
+    const void* mapped = context_.queue().enqueueMapBuffer(frame, CL_TRUE, CL_MAP_READ, 0, frameBytes(form));
     for (int row = 0; row < end_ - begin_; ++row) {
-      std::memcpy(out.data() + size(row) * shape_.rowBytes(),
-                  static_cast<const std::byte*>(mapped) + size(row) * paddedRowBytes(), shape_.rowBytes());
+      std::memcpy(out.data() + size(row) * row_bytes, static_cast<const std::byte*>(mapped) + size(row) * padded,
+                  row_bytes);
     }
-    context_.queue().enqueueUnmapMemObject(frame_, const_cast<void*>(mapped));
+    context_.queue().enqueueUnmapMemObject(frame, const_cast<void*>(mapped));
     context_.finish();
   } catch (const cl::Error& error) {
     throw device::toDeviceError(error, "reading a frame", context_.info());

@@ -14,6 +14,9 @@ namespace facezip::blend {
 inline constexpr int kTileWidth = 16;  ///< texels, kernels/cl/blend.cl
 inline constexpr int kTileRows = 8;    ///< texels
 
+/// What the kernel writes: samples of the neutral's type, or float32 in 1/255 of full scale, before rounding.
+enum class FrameForm { kSamples, kValues };
+
 /// What a map's textures are, for the kernel.
 struct TextureShape {
   int width = 0;                                              ///< texels
@@ -66,14 +69,30 @@ class TextureRows {
   /// weights  [blocks][C][16] float, WeightMaps::weights()
   void blend(const cl::Buffer& weights, std::span<std::byte> out);
 
+  /// The same before rounding: float32 in units of 1/255 of full scale, neither rounded nor clamped.
+  /// out  (end - begin) x width x channels
+  void blendValues(const cl::Buffer& weights, std::span<float> out);
+
   /// Runs the kernel into `frame`, frameBytes() bytes whose rows are padded to whole tiles; for blend() and benchmarks.
-  cl::Event enqueue(const cl::Buffer& weights, const cl::Buffer& frame);
-  std::size_t frameBytes() const { return static_cast<std::size_t>(tileRowCount()) * kTileRows * paddedRowBytes(); }
-  std::size_t paddedRowBytes() const;
+  cl::Event enqueue(const cl::Buffer& weights, const cl::Buffer& frame, FrameForm form = FrameForm::kSamples);
+  std::size_t frameBytes(FrameForm form = FrameForm::kSamples) const {
+    return static_cast<std::size_t>(tileRowCount()) * kTileRows * paddedRowBytes(form);
+  }
+  std::size_t paddedRowBytes(FrameForm form = FrameForm::kSamples) const;
 
  private:
+  /// The kernel that writes one form, and memory for what it writes.
+  struct Output {
+    cl::Kernel kernel;
+    std::size_t local_size = 0;
+    cl::Buffer frame;  // made when a frame is first copied out
+  };
+
   int tileRowCount() const { return (end_ - begin_ + kTileRows - 1) / kTileRows; }
-  bool fitsFrame(std::span<const std::byte> out) const;
+  std::size_t frameSampleBytes(FrameForm form) const;
+  Output& output(FrameForm form);
+  bool fitsFrame(std::span<const std::byte> out, FrameForm form) const;
+  void blendInto(const cl::Buffer& weights, std::span<std::byte> out, FrameForm form);
 
   device::DeviceContext& context_;
   TextureShape shape_;
@@ -81,12 +100,10 @@ class TextureRows {
   int cell_rows_;
   int begin_ = 0;
   int end_ = 0;
-  std::size_t items_per_tile_;
-  cl::Kernel kernel_;
-  std::size_t local_size_;
+  bool gpu_;
+  Output outputs_[2];  // by FrameForm; the second is made when values are first asked for
   cl::Buffer textures_;
   cl::Buffer encoding_;
-  cl::Buffer frame_;  // made when a frame is first copied out
   std::size_t most_rows_;
   std::vector<std::byte> tiles_;  // staging of load()
 };

@@ -10,6 +10,13 @@ PermutationSolver parseSolver(const std::string& name) {
   return name == "message-passing" ? PermutationSolver::kMessagePassing : PermutationSolver::kBest;
 }
 
+CompressOptions::Method parseMethod(const std::string& name) {
+  if (name == "closed-loop") return CompressOptions::Method::kClosedLoop;
+  if (name == "paper") return CompressOptions::Method::kPaper;
+  if (name == "no-permutation") return CompressOptions::Method::kNoPermutation;
+  return CompressOptions::Method::kRefined;
+}
+
 }  // namespace
 
 void addDeviceOption(CLI::App& command, std::string& selector) {
@@ -81,17 +88,6 @@ void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
       ->check(CLI::NonNegativeNumber);
   addMemoryOption(command, arguments.memory);
 }
-
-namespace {
-
-CompressOptions::Method parseMethod(const std::string& name) {
-  if (name == "closed-loop") return CompressOptions::Method::kClosedLoop;
-  if (name == "paper") return CompressOptions::Method::kPaper;
-  if (name == "no-permutation") return CompressOptions::Method::kNoPermutation;
-  return CompressOptions::Method::kRefined;
-}
-
-}  // namespace
 
 CompressOptions parseCompressOptions(const CompressArguments& arguments) {
   CompressOptions options = arguments.options;

@@ -31,7 +31,7 @@ struct EvaluateOptions {
   int blends = 16;  ///< R, random weight vectors to blend; 0: none
   /// Collects small images of every expression and of its errors, for a picture: Evaluation::pictures.
   bool pictures = false;
-  std::string picture_map;  ///< of this map; "": the first of the package
+  std::string picture_map = "";  ///< of this map; "": the first of the package
   std::uint64_t memory_bytes = 2ull << 30;
 };
 

@@ -126,9 +126,9 @@ TEST_F(Evaluating, NormalMapsAreJudgedByAngle) {
   EXPECT_LE(angles.pooled.p99, angles.pooled.max);
 }
 
-// Float maps are neither rounded nor clamped: what linearity says holds to the last digits.
+// Also of 8-bit maps: what a shader sees is neither rounded nor clamped.
 TEST_F(Evaluating, BlendsStayWithinWhatLinearityAllows) {
-  const Package package = compress({.expressions = 10, .type = image::SampleType::kFloat32, .extension = "exr"});
+  const Package package = compress({.expressions = 10});
   EvaluateOptions options = quickOptions();
   options.no_permutation = true;
   const Evaluation evaluation = evaluate(package, options);

@@ -1,19 +1,6 @@
 #include "evaluate/package_decoder.hpp"
 
-#include "evaluate/covered_texels.hpp"
-
 namespace facezip::evaluate {
-namespace {
-
-/// The decoded values of the loaded rows. Rounded to the type of the neutral until BandBlender gives them unrounded.
-void decodeValues(blend::BandBlender& blender, std::span<const float> beta, image::SampleType type,
-                  std::vector<std::byte>& rounded, std::span<float> out) {
-  rounded.resize(out.size() * image::sampleBytes(type));
-  blender.blend(beta, rounded);
-  toValues(rounded, type, out);
-}
-
-}  // namespace
 
 PackageDecoder::PackageDecoder(const Package& package, const Device& device)
     : package_(package),
@@ -31,14 +18,11 @@ std::uint64_t PackageDecoder::residentBytes() const {
 
 void PackageDecoder::openMap(int map_index) {
   blender_ = std::make_unique<blend::BandBlender>(package_, map_index, weights_, device_);
-  type_ = package_.maps()[static_cast<std::size_t>(map_index)].sample_type;
 }
 
 void PackageDecoder::loadRows(int begin, int end) { blender_->loadRows(begin, end); }
 
-void PackageDecoder::decode(std::span<const float> beta, std::span<float> out) {
-  decodeValues(*blender_, beta, type_, rounded_, out);
-}
+void PackageDecoder::decode(std::span<const float> beta, std::span<float> out) { blender_->blendValues(beta, out); }
 
 void PackageDecoder::decodeExpression(int expression, std::span<float> out) {
   beta_[static_cast<std::size_t>(expression)] = 1.0f;

@@ -9,7 +9,6 @@
 
 #include "blend/band_blender.hpp"
 #include "facezip/package.hpp"
-#include "image/image_file.hpp"
 
 namespace facezip::evaluate {
 
@@ -37,8 +36,6 @@ class PackageDecoder {
   const Device& device_;
   blend::WeightSets weights_;
   std::unique_ptr<blend::BandBlender> blender_;
-  image::SampleType type_ = image::SampleType::kUint8;
-  std::vector<std::byte> rounded_;
   std::vector<float> beta_;
 };
 

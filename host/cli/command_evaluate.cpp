@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 
 #include "commands.hpp"
+#include "error_sheet.hpp"
 #include "facezip/evaluate.hpp"
 #include "facezip/report.hpp"
 #include "option_types.hpp"
@@ -17,7 +19,11 @@ void addEvaluateCommand(CLI::App& app, const CommonOptions& common) {
   struct Arguments {
     std::string capture;
     std::string package;
-    std::vector<std::string> baselines = {"pca4", "pca8", "no-permutation"};
+    std::vector<std::string> baselines = {"pca4", "pca8", "no-permutation", "paper", "limit"};
+    bool ablation = false;
+    int blends = EvaluateOptions().blends;
+    std::string picture;
+    std::string picture_map;
     std::string device = "auto";
     std::string memory = "2GiB";
     std::string report;
@@ -27,10 +33,25 @@ void addEvaluateCommand(CLI::App& app, const CommonOptions& common) {
       app.add_subcommand("evaluate", "Compares a package, decoded from disk, with the capture it was made of");
   command->add_option("capture", arguments->capture, "Directory of the capture")->required()->type_name("CAPTURE");
   command->add_option("package", arguments->package, "Directory of the package")->required()->type_name("PACKAGE");
-  command->add_option("--baselines", arguments->baselines, "What to compare with: pca4, pca8, no-permutation, or none")
+  command
+      ->add_option("--baselines", arguments->baselines,
+                   "What to compare with: pca4, pca8, limit (best components of every block), no-permutation, paper, "
+                   "closed-loop, refined (each compresses once more), or none")
       ->delimiter(',')
-      ->check(CLI::IsMember({"pca4", "pca8", "no-permutation", "none"}))
+      ->check(CLI::IsMember({"pca4", "pca8", "limit", "no-permutation", "paper", "closed-loop", "refined", "none"}))
       ->capture_default_str();
+  command->add_flag("--ablation", arguments->ablation,
+                    "Also every method at C = 1, 2, 3, 4: compresses up to 16 times more");
+  command->add_option("--blends", arguments->blends, "Random blends of one to five expressions to measure; 0: none")
+      ->check(CLI::Range(0, 10000))
+      ->capture_default_str();
+  command
+      ->add_option("--picture", arguments->picture,
+                   "Also write an image of every expression: captured, decoded, and errors in false colours")
+      ->type_name("FILE.png");
+  command->add_option("--picture-map", arguments->picture_map, "Map of the picture (default: the first)")
+      ->needs(command->get_option("--picture"))
+      ->type_name("NAME");
   addDeviceOption(*command, arguments->device);
   addMemoryOption(*command, arguments->memory);
   command->add_option("--report", arguments->report, "Also write the figures as JSON (docs/reports.md)")
@@ -39,10 +60,21 @@ void addEvaluateCommand(CLI::App& app, const CommonOptions& common) {
     const auto wanted = [&](const char* name) {
       return std::find(arguments->baselines.begin(), arguments->baselines.end(), name) != arguments->baselines.end();
     };
+    if (!arguments->picture.empty() && std::filesystem::path(arguments->picture).extension() != ".png") {
+      throw InputError({"--picture", "", "a file name that ends in .png", arguments->picture, ""});
+    }
     EvaluateOptions options;
     options.pca4 = wanted("pca4");
     options.pca8 = wanted("pca8");
     options.no_permutation = wanted("no-permutation");
+    options.paper = wanted("paper");
+    options.closed_loop = wanted("closed-loop");
+    options.refined = wanted("refined");
+    options.limit = wanted("limit");
+    options.ablation = arguments->ablation;
+    options.blends = arguments->blends;
+    options.pictures = !arguments->picture.empty();
+    options.picture_map = arguments->picture_map;
     options.memory_bytes = parseBytes("--memory", arguments->memory);
     TerminalProgress progress(common.quiet);
     const CancelOnSignal cancel(progress);
@@ -50,6 +82,7 @@ void addEvaluateCommand(CLI::App& app, const CommonOptions& common) {
     const Evaluation evaluation =
         evaluatePackage(openCapture(arguments->capture), package, options, openDevice(arguments->device), progress);
     if (!arguments->report.empty()) writeReport(arguments->report, toJson(evaluation));
+    if (!arguments->picture.empty()) writeErrorSheet(arguments->picture, evaluation);
     printEvaluation(evaluation);
   });
 }

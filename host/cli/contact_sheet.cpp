@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "sheet.hpp"
+
 namespace facezip::cli {
 namespace fs = std::filesystem;
 namespace {
 
 constexpr int kTile = 256;
-constexpr int kGap = 6;
-constexpr int kLabel = 22;
 constexpr int kShownExpressions = 8;
 
 /// Reads an image as RGB at the size of a tile.
@@ -35,30 +35,6 @@ OIIO::ImageBuf amplifiedDifference(const OIIO::ImageBuf& a, const OIIO::ImageBuf
   return OIIO::ImageBufAlgo::add(OIIO::ImageBufAlgo::mul(difference, kGain), 0.5f);
 }
 
-class Sheet {
- public:
-  Sheet(int columns, int rows)
-      : image_(OIIO::ImageSpec(columns * (kTile + kGap) + kGap, rows * (kTile + kLabel + kGap) + kGap, 3,
-                               OIIO::TypeDesc::UINT8)) {
-    OIIO::ImageBufAlgo::fill(image_, {0.13f, 0.13f, 0.14f});
-  }
-
-  void place(int column, int row, const OIIO::ImageBuf& picture, const std::string& label) {
-    const int x = kGap + column * (kTile + kGap);
-    const int y = kGap + row * (kTile + kLabel + kGap);
-    OIIO::ImageBufAlgo::paste(image_, x, y + kLabel, 0, 0, picture);
-    // Text needs a font; a sheet without labels is still worth having.
-    OIIO::ImageBufAlgo::render_text(image_, x + 2, y + kLabel - 6, label, 14, "DejaVuSans", {0.9f, 0.9f, 0.9f});
-  }
-
-  void write(const fs::path& file) const {
-    if (!image_.write(file.string())) throw OutputError(file, image_.geterror());
-  }
-
- private:
-  OIIO::ImageBuf image_;
-};
-
 }  // namespace
 
 void writeContactSheet(const fs::path& file, const Capture& capture, const Package& package, const fs::path& decoded) {
@@ -66,7 +42,7 @@ void writeContactSheet(const fs::path& file, const Capture& capture, const Packa
   const PackageMap& packed = package.maps()[static_cast<std::size_t>(package.mapIndex(map.name))];
   const int textures = package.differences();
   const int shown = std::min<int>(kShownExpressions, static_cast<int>(capture.expressions.size()));
-  Sheet sheet(std::max(6, textures + 1), 1 + (shown + 1) / 2);
+  Sheet sheet(std::max(6, textures + 1), 1 + (shown + 1) / 2, kTile, kTile);
   sheet.place(0, 0, tile(package.directory() / packed.neutral_file), "neutral");
   for (int i = 0; i < textures; ++i) {
     sheet.place(i + 1, 0, tile(package.directory() / packed.differences[static_cast<std::size_t>(i)].file),
@@ -83,7 +59,7 @@ void writeContactSheet(const fs::path& file, const Capture& capture, const Packa
     sheet.place(column + 1, row, restored, "from the package");
     sheet.place(column + 2, row, amplifiedDifference(original, restored), "difference x 8");
   }
-  sheet.write(file);
+  sheet.save(file);
 }
 
 }  // namespace facezip::cli

@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <map>
 
+#include "method_titles.hpp"
 #include "option_types.hpp"
 
 namespace facezip::cli {
@@ -17,29 +18,89 @@ void printSeconds(const std::vector<std::pair<std::string, double>>& seconds) {
   fmt::print("{:<34}{:>10.2f}\n", "total", total);
 }
 
-/// Column heading of a method, in the order the tables show them.
-const std::vector<std::pair<std::string, std::string>>& methodTitles() {
-  static const std::vector<std::pair<std::string, std::string>> titles = {
-      {"package", "package"}, {"no_permutation", "not permuted"}, {"pca4", "PCA(4)"}, {"pca8", "PCA(8)"}};
-  return titles;
+/// Methods that have a column of their own: the package's own method is the package.
+std::vector<std::string> columnsOf(const Evaluation& evaluation, const Evaluation::Map& map) {
+  std::vector<std::string> columns;
+  for (const auto& [key, title] : methodTitles()) {
+    if (map.rmse.contains(key) && key != evaluation.method) columns.push_back(key);
+  }
+  return columns;
 }
 
-void printErrors(const Evaluation::Map& map, const std::vector<std::string>& expressions) {
+void printErrors(const Evaluation& evaluation, const Evaluation::Map& map) {
   fmt::print("\n{}: RMSE over the covered texels, 0..255 (difference to the neutral: {:.3f})\n{:<34}", map.name,
              map.rms_difference, "expression");
-  for (const auto& [key, title] : methodTitles()) {
-    if (map.rmse.contains(key)) fmt::print("{:>14}", title);
-  }
-  const auto row = [&](const std::string& name, auto&& value) {
-    fmt::print("\n{:<34}", name);
-    for (const auto& [key, title] : methodTitles()) {
-      if (map.rmse.contains(key)) fmt::print("{:>14.3f}", value(map.rmse.at(key)));
+  const std::vector<std::string> columns = columnsOf(evaluation, map);
+  for (const std::string& key : columns) fmt::print("{:>14}", methodTitle(key));
+  for (std::size_t n = 0; n < evaluation.expressions.size(); ++n) {
+    fmt::print("\n{:<34}", evaluation.expressions[n]);
+    for (const std::string& key : columns) {
+      const std::vector<double>& each = map.rmse.at(key).per_expression;
+      fmt::print("{:>14}", each.empty() ? "-" : fmt::format("{:.3f}", each[n]));
     }
-  };
-  for (std::size_t n = 0; n < expressions.size(); ++n) {
-    row(expressions[n], [n](const MapErrors& errors) { return errors.per_expression[n]; });
   }
-  row("all", [](const MapErrors& errors) { return errors.pooled; });
+  fmt::print("\n{:<34}", "all");
+  for (const std::string& key : columns) fmt::print("{:>14.3f}", map.rmse.at(key).pooled);
+  fmt::print("\n");
+}
+
+void printTexelErrors(const std::string& name, const TexelErrors& errors) {
+  fmt::print("{:<34}{:>14.2f}{:>14.2f}{:>14.2f}\n", name, errors.psnr, errors.p99, errors.max);
+}
+
+void printDetail(const Evaluation& evaluation, const Evaluation::Map& map) {
+  fmt::print("\n{:<34}{:>14}{:>14}{:>14}\n", map.name + ": texels of the package", "PSNR dB", "99th pct", "largest");
+  const auto& package = map.detail.at("package");
+  for (std::size_t n = 0; n < evaluation.expressions.size(); ++n) {
+    printTexelErrors(evaluation.expressions[n], package.per_expression[n]);
+  }
+  for (const std::string& key : columnsOf(evaluation, map)) {
+    const auto found = map.detail.find(key);
+    if (found != map.detail.end()) printTexelErrors("all, " + methodTitle(key), found->second.pooled);
+  }
+}
+
+void printAngles(const Evaluation& evaluation, const Evaluation::Map& map) {
+  if (map.angles.empty()) return;
+  fmt::print("\n{:<34}{:>14}{:>14}{:>14}\n", map.name + ": angle of normals, degrees", "mean", "99th pct", "largest");
+  for (const std::string& key : columnsOf(evaluation, map)) {
+    const auto found = map.angles.find(key);
+    if (found == map.angles.end()) continue;
+    const NormalAngles& angles = found->second.pooled;
+    fmt::print("{:<34}{:>14.3f}{:>14.2f}{:>14.2f}\n", methodTitle(key), angles.mean, angles.p99, angles.max);
+  }
+}
+
+void printBlends(const Evaluation& evaluation, const Evaluation::Map& map) {
+  if (map.blends.empty()) return;
+  fmt::print("\n{:<34}{:>14}{:>14}\n", fmt::format("{}: {} random blends", map.name, evaluation.blend_weights.size()),
+             "RMSE", "of bound");
+  for (const std::string& key : columnsOf(evaluation, map)) {
+    const auto found = map.blends.find(key);
+    if (found == map.blends.end()) continue;
+    fmt::print("{:<34}{:>14.3f}{:>12.0f} %\n", methodTitle(key), found->second.rmse,
+               100.0 * found->second.largest_share_of_bound);
+  }
+}
+
+constexpr int kAblatedDifferences[] = {1, 2, 3, 4, 8};
+
+/// A row for each method and a column for each C; `cell` gives the text of a value.
+template <typename Value, typename Cell>
+void printAblation(const std::string& title, const std::map<std::string, std::map<int, Value>>& values,
+                   const Cell& cell) {
+  if (values.empty()) return;
+  fmt::print("\n{:<34}", title);
+  for (const int differences : kAblatedDifferences) fmt::print("{:>14}", fmt::format("C = {}", differences));
+  for (const auto& [key, name] : methodTitles()) {
+    const auto row = values.find(key);
+    if (row == values.end()) continue;
+    fmt::print("\n{:<34}", name);
+    for (const int differences : kAblatedDifferences) {
+      const auto value = row->second.find(differences);
+      fmt::print("{:>14}", value == row->second.end() ? "" : cell(value->second));
+    }
+  }
   fmt::print("\n");
 }
 
@@ -93,7 +154,16 @@ void printCompressReport(const CompressReport& report) {
 }
 
 void printEvaluation(const Evaluation& evaluation) {
-  for (const Evaluation::Map& map : evaluation.maps) printErrors(map, evaluation.expressions);
+  fmt::print("package: {} method, C = {}\n", methodTitle(evaluation.method), evaluation.differences);
+  for (const Evaluation::Map& map : evaluation.maps) {
+    printErrors(evaluation, map);
+    printDetail(evaluation, map);
+    printAngles(evaluation, map);
+    printBlends(evaluation, map);
+    printAblation(map.name + ": RMSE of all, by C", map.ablation,
+                  [](double rmse) { return fmt::format("{:.3f}", rmse); });
+  }
+  printAblation("run-time memory, by C", evaluation.ablation_bytes, formatMegabytes);
   printBytes(evaluation);
   fmt::print("\n");
   printSeconds(evaluation.seconds);

@@ -7,7 +7,8 @@
 namespace facezip::cli {
 
 void printCompressReport(const CompressReport& report);
-/// RMSE by expression and method of every map, then memory, then times.
+/// RMSE by expression and method of every map, texel errors, angles of normals, blends and the ablation where there is
+/// one; then memory, then times.
 void printEvaluation(const Evaluation& evaluation);
 
 }  // namespace facezip::cli

@@ -155,7 +155,78 @@ TEST_F(Command, EvaluateReportsWhatTheSchemaSays) {
                        quoted(out / "f.json"))
                 .exit_code,
             0);
-  EXPECT_EQ(readJson(out / "f.json")["maps"]["albedo"]["rmse"].size(), 2u);
+  // The package, its own method under its name, and PCA.
+  EXPECT_EQ(readJson(out / "f.json")["maps"]["albedo"]["rmse"].size(), 3u);
+}
+
+TEST_F(Command, EvaluateReportsTexelsAnglesAndBlends) {
+  const test::TemporaryDirectory out;
+  const test::CommandResult result =
+      runFacezip("evaluate " + quoted(capture()) + " " + quoted(package()) +
+                 " --baselines no-permutation,limit --blends 4 --report " + quoted(out / "e.json"));
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  for (const char* text : {"PSNR", "block limit", "normal: angle of normals", "4 random blends"}) {
+    EXPECT_THAT(result.out, HasSubstr(text));
+  }
+  const json report = readJson(out / "e.json");
+  const std::string method = report["method"];
+  EXPECT_EQ(report["blend_weights"].size(), 4u);
+  EXPECT_GT(report["maps"]["albedo"]["rmse"]["limit"].get<double>(), 0.0);
+  for (const char* map : {"albedo", "normal"}) {
+    const json& entry = report["maps"][map];
+    EXPECT_EQ(entry["rmse"][method], entry["rmse"]["package"]);
+    for (const std::string& key : {std::string("package"), method, std::string("no_permutation")}) {
+      EXPECT_EQ(entry["detail"]["e01"][key]["rmse"], entry["per_expression"]["e01"][key]);
+      EXPECT_GT(entry["detail_pooled"][key]["psnr"].get<double>(), 20.0);
+      EXPECT_GE(entry["detail_pooled"][key]["max"].get<double>(), entry["detail_pooled"][key]["p99"].get<double>());
+      EXPECT_GT(entry["blends"][key]["rmse"].get<double>(), 0.0);
+      EXPECT_GT(entry["blends"][key]["largest_share_of_bound"].get<double>(), 0.0);
+    }
+  }
+  EXPECT_GT(report["maps"]["normal"]["angle"]["package"]["mean"].get<double>(), 0.0);
+  EXPECT_TRUE(report["maps"]["normal"]["angle_per_expression"]["e03"]["package"].contains("p99"));
+  EXPECT_FALSE(report["maps"]["albedo"].contains("angle"));
+  EXPECT_FALSE(report["maps"]["albedo"].contains("ablation"));
+}
+
+TEST_F(Command, EvaluateAblates) {
+  const test::TemporaryDirectory out;
+  const test::CommandResult result =
+      runFacezip("evaluate " + quoted(capture()) + " " + quoted(package()) +
+                 " --baselines none --blends 0 --ablation --report " + quoted(out / "e.json"));
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  EXPECT_THAT(result.out, HasSubstr("C = 3"));
+  const json report = readJson(out / "e.json");
+  for (const char* method : {"refined", "closed_loop", "paper", "no_permutation", "limit", "pca"}) {
+    for (const char* differences : {"1", "2", "3", "4"}) {
+      const json& entry = report["maps"]["normal"]["ablation"][method][differences];
+      EXPECT_GT(entry["rmse"].get<double>(), 0.0) << method;
+      EXPECT_GT(entry["bytes"].get<int>(), 0) << method;
+    }
+  }
+  EXPECT_TRUE(report["maps"]["albedo"]["ablation"]["pca"].contains("8"));
+  EXPECT_FALSE(report["maps"]["albedo"].contains("blends"));
+}
+
+TEST_F(Command, EvaluateDrawsThePicture) {
+  const test::TemporaryDirectory out;
+  const std::string command =
+      "evaluate " + quoted(capture()) + " " + quoted(package()) + " --baselines pca4 --blends 0";
+  const test::CommandResult result =
+      runFacezip(command + " --picture " + quoted(out / "new/errors.png") + " --picture-map normal");
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  EXPECT_EQ(test::filesBelow(out.path()), (std::set<std::string>{"new", "new/errors.png"}));
+  const image::ImageShape shape = image::readImage(out / "new/errors.png").shape;
+  EXPECT_GE(shape.width, 5 * 80);  // captured, two methods and their errors
+  EXPECT_GE(shape.height, 6 * 80);
+  for (const std::string& bad : {std::string(" --picture ") + quoted(out / "errors.jpg"),
+                                 " --picture " + quoted(out / "errors.png") + " --picture-map roughness"}) {
+    EXPECT_EQ(runFacezip(command + bad).exit_code, cli::kExitInput) << bad;
+  }
+  for (const char* bad : {" --picture-map normal", " --blends -1", " --blends many", " --baselines pca5"}) {
+    EXPECT_EQ(runFacezip(command + bad).exit_code, cli::kExitUsage) << bad;
+  }
+  EXPECT_EQ(runFacezip(command + " --picture /proc/facezip/errors.png").exit_code, cli::kExitOutput);
 }
 
 TEST_F(Command, InfoDevicesVersionAndHelp) {

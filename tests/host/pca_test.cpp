@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/SVD>
+#include <cstring>
+#include <numeric>
 #include <random>
 
 namespace facezip {
@@ -27,6 +29,27 @@ TEST(Pca, GramGivesTheResidualsOfASingularValueDecomposition) {
     const auto errors = evaluate::pcaSquaredErrors(differences.transpose() * differences, components);
     ASSERT_EQ(errors.size(), 9u);
     for (int n = 0; n < 9; ++n) EXPECT_NEAR(errors[static_cast<std::size_t>(n)], residual.col(n).squaredNorm(), 1e-9);
+  }
+}
+
+TEST(Pca, ProjectorLeavesTheSameErrorsTexelByTexel) {
+  // Three textures of 40 texels of two channels: float samples, the neutral at zero.
+  const compress::BandShape shape{10, 4, 2, 3, image::SampleType::kFloat32};
+  const Eigen::MatrixXf differences = randomDifferences(80, 3).cast<float>();
+  std::vector<float> samples(80, 0.0f);
+  samples.insert(samples.end(), differences.data(), differences.data() + differences.size());
+  std::vector<std::byte> bytes(samples.size() * sizeof(float));
+  std::memcpy(bytes.data(), samples.data(), bytes.size());
+  std::vector<std::uint32_t> texels(40);
+  std::iota(texels.begin(), texels.end(), 0u);
+  const Eigen::MatrixXd gram = 255.0 * 255.0 * (differences.transpose() * differences).cast<double>();
+  for (const int components : {0, 1, 2, 3}) {
+    const Eigen::MatrixXf errors =
+        evaluate::pcaTexelErrors(bytes, shape, texels, evaluate::pcaProjector(gram, components));
+    const auto expected = evaluate::pcaSquaredErrors(gram, components);
+    for (int n = 0; n < 3; ++n) {
+      EXPECT_NEAR(2.0f * errors.col(n).squaredNorm(), expected[static_cast<std::size_t>(n)], 1e-4 * gram(n, n));
+    }
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,36 +16,105 @@
 
 namespace facezip {
 
+/// What to measure beside the package. A method of compression costs one compression more, with the package's own
+/// settings, in the directory for temporary files; the method that the package was made with costs nothing.
 struct EvaluateOptions {
   bool pca4 = true;            ///< PCA with 4 components, the neutral as mean
   bool pca8 = true;            ///< with 8
-  bool no_permutation = true;  ///< the package's own settings, clusters not permuted; compresses the capture once more
+  bool no_permutation = true;  ///< the paper's method without permuting clusters
+  bool paper = true;           ///< the paper's method
+  bool closed_loop = false;    ///< the paper's weights, difference textures fitted to them
+  bool refined = false;        ///< weights and difference textures fitted in turn
+  bool limit = true;           ///< the best C components of every block of weight_scale x weight_scale texels
+  /// Also every method at C = 1, 2, 3, 4: up to 16 compressions more, one after the other.
+  bool ablation = false;
+  int blends = 16;  ///< R, random weight vectors to blend; 0: none
+  /// Collects small images of every expression and of its errors, for a picture: Evaluation::pictures.
+  bool pictures = false;
+  std::string picture_map = "";  ///< of this map; "": the first of the package
   std::uint64_t memory_bytes = 2ull << 30;
 };
 
 /// Root mean square errors of one method on one map, over the covered texels and all channels, in 1/255 of full scale.
 struct MapErrors {
   double pooled = 0.0;                 ///< over all expressions
-  std::vector<double> per_expression;  ///< N
+  std::vector<double> per_expression;  ///< N; empty for "limit", which is known of all together
 };
 
+/// Errors of texels, in 1/255 of full scale. The error of a texel is the root mean square over its channels.
+struct TexelErrors {
+  double rmse = 0.0;
+  double psnr = 0.0;  ///< 20 log10(255 / rmse) dB; infinite when rmse is 0
+  double p99 = 0.0;   ///< 99 of 100 texels have no larger error; rounded up to 1/64
+  double max = 0.0;
+};
+
+/// Angles between captured and decoded normals, degrees in [0, 180].
+struct NormalAngles {
+  double mean = 0.0;
+  double p99 = 0.0;  ///< rounded up to 1/64
+  double max = 0.0;
+};
+
+/// Of all expressions together and of each.
+template <typename Value>
+struct PooledAndEach {
+  Value pooled;
+  std::vector<Value> per_expression;  ///< N
+};
+
+/// Blends of several expressions at once: Eq. 8 against I_0 + sum_n beta_n Delta_n of the captured textures.
+struct BlendErrors {
+  double rmse = 0.0;  ///< over all weight vectors
+  /// The largest rmse(beta) / sum_n |beta_n| rmse_n. Decoding is linear, so the triangle inequality keeps it below 1.
+  double largest_share_of_bound = 0.0;
+};
+
+/// Small images of one map of every expression, for a picture.
+struct ErrorPictures {
+  std::string map;
+  int width = 0;  ///< pixels, at most 256
+  int height = 0;
+  std::vector<std::string> methods;  ///< "package", then of "paper" and "pca4" what was asked for
+  double scale = 0.0;                ///< the largest p99 of the methods, in 1/255: where an error scale should end
+  /// [N][1 + methods] images as captured and as decoded: height x width x 3 values in [0, 1], row 0 = v 1
+  std::vector<std::vector<std::vector<float>>> images;
+  /// [N][methods] errors in 1/255, root mean square over the texels of a pixel: height x width; negative: none covered
+  std::vector<std::vector<std::vector<float>>> errors;
+};
+
+/// Methods are named "package" (as decoded from disk), "no_permutation", "paper", "closed_loop", "refined" (packages of
+/// these methods; the package's own method is an entry too, equal to "package"), "pca4", "pca8" and "limit".
 struct Evaluation {
   struct Map {
     std::string name;
     double rms_difference = 0.0;            ///< of the expressions to the neutral, pooled: the error of storing nothing
-    std::map<std::string, MapErrors> rmse;  ///< by method: "package", "pca4", "pca8", "no_permutation"
+    std::map<std::string, MapErrors> rmse;  ///< by method
+    std::map<std::string, PooledAndEach<TexelErrors>> detail;   ///< by method that is decoded: package and packages
+    std::map<std::string, PooledAndEach<NormalAngles>> angles;  ///< of normal maps, by method that is decoded
+    std::map<std::string, BlendErrors> blends;                  ///< by method that is decoded
+    /// RMSE by method ("pca" for PCA) and C; 8 for "pca" only. Empty without EvaluateOptions::ablation.
+    std::map<std::string, std::map<int, double>> ablation;
   };
+  std::string method;   ///< of the package: "paper", ...
+  int differences = 0;  ///< C of the package
   std::vector<std::string> expressions;
   std::uint64_t covered_texels = 0;  ///< of the first map
   std::vector<Map> maps;
   /// Run-time memory by method, decoded textures and weights as the paper's Table 1 counts them: "package", "pca4",
   /// "pca8", "raw" (every texture), "neutral", and "package_disk" for the files.
   std::map<std::string, std::uint64_t> bytes;
+  /// The same by method and C, as in Map::ablation. "limit" counts what a package of that C takes.
+  std::map<std::string, std::map<int, std::uint64_t>> ablation_bytes;
+  /// R weight vectors that were blended, N values each, in the package's order.
+  std::vector<std::vector<float>> blend_weights;
+  std::optional<ErrorPictures> pictures;
   std::vector<std::pair<std::string, double>> seconds;  ///< wall time of each stage
 };
 
-/// Evaluates `package`, decoded from disk by the run time's own code, against `capture`.
-/// Throws InputError if the package is not of this capture (maps, sizes, expressions).
+/// Evaluates `package`, decoded from disk by the run time's own code, against `capture`. Errors are of the decoded
+/// values before they are rounded to the type of the neutral, as a shader has them; textures stream in bands of rows.
+/// Throws InputError if the package is not of this capture (maps, sizes, expressions) or has no map `picture_map`.
 Evaluation evaluatePackage(const Capture& capture, const Package& package, const EvaluateOptions& options,
                            const Device& device, Progress& progress);
 

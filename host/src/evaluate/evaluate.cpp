@@ -5,221 +5,270 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 
-#include "blend/band_blender.hpp"
-#include "compress/band_plan.hpp"
-#include "compress/face.hpp"
 #include "compress/gram.hpp"
 #include "compress/map_bands.hpp"
-#include "compress/map_set.hpp"
-#include "compress/method_record.hpp"
 #include "compress/stage_clock.hpp"
+#include "evaluate/ablation.hpp"
+#include "evaluate/baseline_packages.hpp"
+#include "evaluate/blend_error.hpp"
+#include "evaluate/block_limit.hpp"
+#include "evaluate/covered_texels.hpp"
+#include "evaluate/error_pictures.hpp"
+#include "evaluate/map_measurement.hpp"
+#include "evaluate/normal_angle.hpp"
 #include "evaluate/pca.hpp"
-#include "evaluate/squared_error.hpp"
-#include "facezip/compress.hpp"
-#include "io/staged_directory.hpp"
+#include "evaluate/subject.hpp"
+#include "evaluate/texel_errors.hpp"
 #include "raster/texel_masks.hpp"
 
 namespace facezip {
 namespace {
 using namespace compress;
 using namespace evaluate;
-namespace fs = std::filesystem;
 
-/// The capture's maps that the package has, in the package's order; refuses a package of another capture.
-Capture matchingCapture(const Capture& capture, const Package& package) {
-  const std::string file = (package.directory() / "package.json").string();
-  if (capture.expressions != package.expressions()) {
-    throw InputError(
-        {file, "expressions",
-         fmt::format("the {} expressions of {}, in its order", capture.expressions.size(), capture.directory.string()),
-         fmt::format("{} expressions", package.expressions().size()), "evaluate against the capture it was made of"});
-  }
-  Capture matching = capture;
-  matching.maps.clear();
-  for (const PackageMap& map : package.maps()) {
-    const auto found =
-        std::find_if(capture.maps.begin(), capture.maps.end(), [&](const CaptureMap& m) { return m.name == map.name; });
-    if (found == capture.maps.end()) {
-      throw InputError({file, fmt::format("map \"{}\"", map.name),
-                        fmt::format("a map of {}", capture.directory.string()), "none of that name", ""});
-    }
-    matching.maps.push_back(*found);
-  }
-  return matching;
-}
-
-void requireSameShape(const OpenMap& map, const PackageMap& packed, const Package& package) {
-  const image::ImageShape& shape = map.samples->shape();
-  const image::ImageShape got{packed.width, packed.height, packed.channels, packed.sample_type};
-  if (shape == got) return;
-  throw InputError({(package.directory() / "package.json").string(), fmt::format("map \"{}\"", packed.name),
-                    fmt::format("{} x {}, {} channels as in the capture", shape.width, shape.height, shape.channels),
-                    fmt::format("{} x {}, {} channels", got.width, got.height, got.channels),
-                    "compress the capture again"});
-}
-
-/// Squared errors of one method on one map.
-struct ErrorSums {
-  std::string method;
-  std::vector<double> per_expression;
-};
-
-MapErrors toErrors(const std::vector<double>& squared, double samples) {
-  MapErrors errors;
-  double sum = 0.0;
-  for (const double value : squared) {
-    sum += value;
-    errors.per_expression.push_back(std::sqrt(value / samples));
-  }
-  errors.pooled = std::sqrt(sum / (samples * static_cast<double>(squared.size())));
-  return errors;
-}
-
-/// A package of the same capture and settings whose clusters are not permuted, in a temporary directory.
-class UnpermutedPackage {
- public:
-  UnpermutedPackage(const Capture& capture, CompressOptions options, const EvaluateOptions& evaluation,
-                    const Device& device, Progress& progress)
-      : staged_(fs::temp_directory_path() / "facezip-no-permutation", io::StagedDirectory::Existing::kMerge) {
-    options.method = CompressOptions::Method::kNoPermutation;
-    options.memory_bytes = evaluation.memory_bytes;
-    compressCapture(capture, staged_.path() / "package", options, device, progress);
-    package_ = std::make_unique<Package>(Package::open(staged_.path() / "package"));
-  }
-  const Package& package() const { return *package_; }
-
- private:
-  io::StagedDirectory staged_;  // never committed: the destructor removes it
-  std::unique_ptr<Package> package_;
-};
-
-/// A package beside its name in the tables and its weights on the device.
+/// A package beside its name in the tables.
 struct Candidate {
   std::string method;
-  const Package* package = nullptr;
-  blend::WeightSets weights;
+  std::unique_ptr<TemporaryPackage> temporary;  ///< none for the package that is evaluated
+  std::unique_ptr<PackageDecoder> decoder;
 };
+
+/// What one pass over a map's textures finds.
+struct MapPass {
+  GramMatrices grams;
+  RankEnergy limit;
+  std::vector<PackageErrors> errors;  ///< of each candidate
+  double samples = 0.0;               ///< covered texels x channels
+};
+
+template <typename Summary>
+auto pooledAndEach(const ErrorDistribution& pooled, const std::vector<ErrorDistribution>& each,
+                   const Summary& summarize) {
+  PooledAndEach<decltype(summarize(pooled))> result{summarize(pooled), {}};
+  for (const ErrorDistribution& distribution : each) result.per_expression.push_back(summarize(distribution));
+  return result;
+}
+
+MapErrors pcaErrors(const Eigen::MatrixXd& gram, int components, double samples) {
+  MapErrors errors;
+  double sum = 0.0;
+  for (const double squared : pcaSquaredErrors(gram, components)) {
+    sum += squared;
+    errors.per_expression.push_back(std::sqrt(squared / samples));
+  }
+  errors.pooled = std::sqrt(sum / (samples * static_cast<double>(gram.rows())));
+  return errors;
+}
 
 class Evaluator {
  public:
   Evaluator(const Capture& capture, const Package& package, const EvaluateOptions& options, const Device& device,
             Progress& progress)
-      : capture_(matchingCapture(capture, package)),
-        package_(package),
+      : package_(package),
         options_(options),
-        recorded_(optionsFromMethodJson(package.methodJson(), (package.directory() / "package.json").string())),
-        device_(device),
-        progress_(progress),
+        subject_(makeSubject(capture, package, options.memory_bytes, device, progress)),
+        own_method_(methodKey(subject_.recorded.method)),
+        picture_map_(options.picture_map.empty() ? 0 : package.mapIndex(options.picture_map)),
         buffers_(device.context()) {}
 
   Evaluation run() {
+    evaluation_.method = own_method_;
+    evaluation_.differences = package_.differences();
     evaluation_.expressions = package_.expressions();
-    if (options_.no_permutation) {
-      unpermuted_ = std::make_unique<UnpermutedPackage>(capture_, recorded_, options_, device_, progress_);
-      candidates_.push_back({"no_permutation", &unpermuted_->package(), {}});
-      clock_.book("compressing without permutation");
-    }
-    candidates_.push_back({"package", &package_, {}});
-    for (Candidate& candidate : candidates_) candidate.weights = blend::loadWeightMaps(*candidate.package, device_);
-    face_ = readFace(capture_, recorded_.region);
-    maps_ = openMaps(capture_, face_, recorded_.weight_scale, 0);
-    for (std::size_t m = 0; m < maps_.maps.size(); ++m) evaluateMap(static_cast<int>(m));
+    evaluation_.blend_weights = randomWeightVectors(subject_.recorded.seed, options_.blends, subject_.expressions());
+    makeCandidates();
+    evaluateMaps();
     countBytes();
     clock_.book("comparing");
+    candidates_.clear();
+    if (options_.ablation) {
+      addAblation(subject_, evaluation_);
+      clock_.book("ablation");
+    }
     evaluation_.seconds = clock_.seconds();
     return evaluation_;
   }
 
  private:
-  int expressions() const { return static_cast<int>(capture_.expressions.size()); }
+  using Method = CompressOptions::Method;
 
-  int bandRows(const OpenMap& map) const {
-    const BandCost cost = bandCost(bandShape(*map.samples, 0), 2 * (package_.differences() + 1), 0);
-    std::uint64_t cells = 0;
-    for (const PackageWeights& grid : package_.weightSets())
-      cells += static_cast<std::uint64_t>(grid.tile_width) * static_cast<std::uint64_t>(grid.tile_height);
-    const auto weights = static_cast<std::uint64_t>(expressions()) * static_cast<std::uint64_t>(package_.differences());
-    const std::uint64_t resident = cells * weights * candidates_.size();
-    return planBandRows(cost, map.samples->shape().height, options_.memory_bytes, resident, device_.info());
+  void makeCandidates() {
+    candidates_.push_back({"package", nullptr, std::make_unique<PackageDecoder>(package_, subject_.device)});
+    if (options_.no_permutation) addCandidate(Method::kNoPermutation);
+    if (options_.paper) addCandidate(Method::kPaper);
+    if (options_.closed_loop) addCandidate(Method::kClosedLoop);
+    if (options_.refined) addCandidate(Method::kRefined);
   }
 
-  void addErrors(blend::BandBlender& blender, const MapBand& band, std::vector<double>& sums) {
-    blender.loadRows(band.begin, band.end);
-    const std::size_t image_bytes = band.samples.size() / (static_cast<std::size_t>(expressions()) + 1);
-    decoded_.resize(image_bytes);
-    std::vector<float> beta(static_cast<std::size_t>(expressions()), 0.0f);
-    for (std::size_t n = 0; n < beta.size(); ++n) {
-      beta[n] = 1.0f;
-      blender.blend(beta, decoded_);
-      beta[n] = 0.0f;
-      sums[n] +=
-          squaredError(decoded_, band.samples.subspan((n + 1) * image_bytes, image_bytes), band.shape, band.masks);
+  void addCandidate(Method method) {
+    if (method == subject_.recorded.method) return;  // the package itself
+    CompressOptions options = subject_.recorded;
+    options.method = method;
+    const std::string key = methodKey(method);
+    auto temporary =
+        std::make_unique<TemporaryPackage>(subject_.capture, options, key, subject_.device, subject_.progress);
+    auto decoder = std::make_unique<PackageDecoder>(temporary->package(), subject_.device);
+    candidates_.push_back({key, std::move(temporary), std::move(decoder)});
+    clock_.book("compressing: " + key);
+  }
+
+  void evaluateMaps() {
+    MapSet maps = openMaps(subject_);
+    for (std::size_t m = 0; m < maps.maps.size(); ++m) {
+      std::optional<PictureCollector> pictures;
+      if (options_.pictures && static_cast<int>(m) == picture_map_) pictures.emplace(collectorOf(maps.maps[m]));
+      const MapPass pass = measureMap(maps.maps[m], static_cast<int>(m), pictures ? &*pictures : nullptr);
+      addMap(maps.maps[m], pass);
+      if (pictures) finishPictures(maps.maps[m], pass, *pictures);
     }
   }
 
-  // One pass over a map: Gram matrix of its differences, and every package decoded beside the captured textures.
-  void evaluateMap(int index) {
-    OpenMap& map = maps_.maps[static_cast<std::size_t>(index)];
-    std::vector<std::unique_ptr<blend::BandBlender>> blenders;
-    std::vector<ErrorSums> sums;
-    for (const Candidate& candidate : candidates_) {
-      requireSameShape(map, candidate.package->maps()[static_cast<std::size_t>(index)], *candidate.package);
-      blenders.push_back(std::make_unique<blend::BandBlender>(*candidate.package, index, candidate.weights, device_));
-      sums.push_back({candidate.method, std::vector<double>(static_cast<std::size_t>(expressions()), 0.0)});
+  std::vector<PackageDecoder*> openDecoders(const OpenMap& map, int index) {
+    std::vector<PackageDecoder*> decoders;
+    for (Candidate& candidate : candidates_) {
+      const Package& package = candidate.decoder->package();
+      requireSameShape(map, package.maps()[static_cast<std::size_t>(index)], package);
+      candidate.decoder->openMap(index);
+      decoders.push_back(candidate.decoder.get());
     }
-    GramAccumulator accumulator(device_.context(), GramSlots{}, expressions());
+    return decoders;
+  }
+
+  // One pass over a map: Gram matrices of its differences and of its blocks', and every package decoded beside it.
+  MapPass measureMap(OpenMap& map, int index, PictureCollector* pictures) {
+    const image::ImageShape& shape = map.samples->shape();
+    const auto count = static_cast<std::uint64_t>(subject_.expressions());
+    const std::vector<PackageDecoder*> decoders = openDecoders(map, index);
+    MapMeasurement measurement(decoders, subject_.expressions(),
+                               {isNormalMap(map.source->name, shape.channels), evaluation_.blend_weights, pictures});
+    GramAccumulator accumulator(subject_.device.context(), GramSlots{}, subject_.expressions());
+    const int side = package_.maps()[static_cast<std::size_t>(index)].weight_scale;
+    BlockRankEnergy blocks({side}, shape.width, shape.height, shape.channels, subject_.expressions());
+    const auto block_row = static_cast<std::uint64_t>(shape.width / side + 1) * count * count * 8;
+    const int rows = bandRows(subject_, map, decoders, block_row + (pictures ? pictures->bytes() : 0));
     std::uint64_t covered = 0;
     const auto make_tiles = [&](int begin, int end) { return raster::coverageTiles(*map.raster, begin, end); };
-    forEachMapBand(*map.samples, bandRows(map), buffers_, make_tiles, fmt::format("evaluating: {}", map.source->name),
-                   progress_, [&](const MapBand& band) {
+    forEachMapBand(*map.samples, rows, buffers_, make_tiles, fmt::format("evaluating: {}", map.source->name),
+                   subject_.progress, [&](const MapBand& band) {
+                     const auto texels = coveredTexels(band.shape, band.masks);
+                     covered += texels.size();
                      accumulator.add(band.tiles, band.differences, band.shape, 1.0);
-                     covered += static_cast<std::uint64_t>(
-                         std::count(band.masks.texel_weights.begin(), band.masks.texel_weights.end(), 1.0f));
-                     for (std::size_t c = 0; c < blenders.size(); ++c)
-                       addErrors(*blenders[c], band, sums[c].per_expression);
+                     if (options_.limit || options_.ablation)
+                       blocks.addBand(band.begin, band.samples, band.shape, texels);
+                     measurement.addBand(band.begin, band.end, band.samples, band.shape, texels);
                    });
     if (index == 0) evaluation_.covered_texels = covered;
-    const double samples = static_cast<double>(covered) * map.samples->shape().channels;
-    addMap(map, accumulator.finish(), sums, samples);
+    return {accumulator.finish(), blocks.energies().front(), measurement.errors(),
+            static_cast<double>(covered) * shape.channels};
   }
 
-  void addMap(const OpenMap& map, const GramMatrices& grams, const std::vector<ErrorSums>& sums, double samples) {
-    const Eigen::MatrixXd gram = grams.slot(grams.slots.whole());
+  static Eigen::MatrixXd gramOf(const MapPass& pass) { return pass.grams.slot(pass.grams.slots.whole()); }
+
+  void addMap(const OpenMap& map, const MapPass& pass) {
+    const Eigen::MatrixXd gram = gramOf(pass);
     Evaluation::Map result;
     result.name = map.source->name;
-    result.rms_difference = std::sqrt(gram.trace() / (samples * expressions()));
-    if (options_.pca4) result.rmse["pca4"] = toErrors(pcaSquaredErrors(gram, 4), samples);
-    if (options_.pca8) result.rmse["pca8"] = toErrors(pcaSquaredErrors(gram, 8), samples);
-    for (const ErrorSums& sum : sums) result.rmse[sum.method] = toErrors(sum.per_expression, samples);
+    result.rms_difference = std::sqrt(gram.trace() / (pass.samples * subject_.expressions()));
+    if (options_.pca4) result.rmse["pca4"] = pcaErrors(gram, 4, pass.samples);
+    if (options_.pca8) result.rmse["pca8"] = pcaErrors(gram, 8, pass.samples);
+    if (options_.limit) result.rmse["limit"] = {limitError(pass, package_.differences()), {}};
+    for (std::size_t c = 0; c < candidates_.size(); ++c) {
+      addDecoded(candidates_[c].method, pass.errors[c], result);
+      if (candidates_[c].method == "package") addDecoded(own_method_, pass.errors[c], result);
+    }
+    if (options_.ablation) addUndecodedAblation(pass, gram, result);
     evaluation_.maps.push_back(std::move(result));
+  }
+
+  double limitError(const MapPass& pass, int components) const {
+    const double residual = pass.limit.residual[static_cast<std::size_t>(components)];
+    return std::sqrt(residual / (pass.samples * subject_.expressions()));
+  }
+
+  void addDecoded(const std::string& method, const PackageErrors& errors, Evaluation::Map& result) const {
+    const auto detail = pooledAndEach(errors.pooledTexels(), errors.texels, summarizeTexelErrors);
+    MapErrors& rmse = result.rmse[method];
+    rmse.pooled = detail.pooled.rmse;
+    for (const TexelErrors& each : detail.per_expression) rmse.per_expression.push_back(each.rmse);
+    result.detail[method] = detail;
+    if (!errors.angles.empty()) {
+      result.angles[method] = pooledAndEach(errors.pooledAngles(), errors.angles, summarizeNormalAngles);
+    }
+    if (!errors.blends.empty()) {
+      result.blends[method] = summarizeBlendErrors(errors.blends, evaluation_.blend_weights, errors.texels);
+    }
+  }
+
+  void addUndecodedAblation(const MapPass& pass, const Eigen::MatrixXd& gram, Evaluation::Map& result) const {
+    for (int components = 1; components <= kMostAblated; ++components) {
+      result.ablation["limit"][components] = limitError(pass, components);
+      result.ablation["pca"][components] = pcaErrors(gram, components, pass.samples).pooled;
+    }
+    result.ablation["pca"][8] = pcaErrors(gram, 8, pass.samples).pooled;
+  }
+
+  PictureCollector collectorOf(const OpenMap& map) const {
+    std::vector<int> columns;
+    std::vector<std::string> methods;
+    for (const Candidate& candidate : candidates_) {
+      const bool shown = candidate.method == "package" || candidate.method == "paper";
+      columns.push_back(shown ? static_cast<int>(methods.size()) : -1);
+      if (shown) methods.push_back(candidate.method);
+    }
+    if (options_.pca4) methods.emplace_back("pca4");
+    return {map.source->name, map.samples->shape(), subject_.expressions(), columns, methods};
+  }
+
+  // PCA's components are known only now: its errors take another pass over the map.
+  void finishPictures(OpenMap& map, const MapPass& pass, PictureCollector& pictures) {
+    double largest_p99 = 0.0;
+    for (const char* method : {"package", "paper"}) {
+      const auto found = evaluation_.maps.back().detail.find(method);
+      if (found != evaluation_.maps.back().detail.end()) largest_p99 = std::max(largest_p99, found->second.pooled.p99);
+    }
+    const Eigen::MatrixXd projector = pcaProjector(gramOf(pass), 4);
+    if (pictures.wantsPca()) {
+      subject_.progress.stage(fmt::format("picture: {}", map.source->name),
+                              static_cast<std::size_t>(map.samples->shape().height));
+      const int rows = bandRows(subject_, map, {}, pictures.bytes());
+      map.samples->forEachBand(rows, subject_.progress, [&](const image::SampleBand& band) {
+        const BandShape shape = bandShape(*map.samples, band.end - band.begin);
+        const auto texels = coveredTexels(shape, raster::coverageTiles(*map.raster, band.begin, band.end));
+        pictures.addPca(band.begin, band.samples, shape, texels, projector);
+        subject_.progress.advance(static_cast<std::size_t>(band.end));
+      });
+    }
+    evaluation_.pictures = pictures.finish(largest_p99, projector);
   }
 
   void countBytes() {
     std::uint64_t textures = 0;  // one of every map
     for (const PackageMap& map : package_.maps()) textures += map.frameBytes();
     evaluation_.bytes["neutral"] = textures;
-    evaluation_.bytes["raw"] = textures * (static_cast<std::uint64_t>(expressions()) + 1);
+    evaluation_.bytes["raw"] = textures * (static_cast<std::uint64_t>(subject_.expressions()) + 1);
     if (options_.pca4) evaluation_.bytes["pca4"] = textures * 5;
     if (options_.pca8) evaluation_.bytes["pca8"] = textures * 9;
-    if (options_.no_permutation) evaluation_.bytes["no_permutation"] = package_.bytesInMemory();
-    evaluation_.bytes["package"] = package_.bytesInMemory();
+    for (const Candidate& candidate : candidates_) {
+      evaluation_.bytes[candidate.method] = candidate.decoder->package().bytesInMemory();
+    }
+    evaluation_.bytes[own_method_] = package_.bytesInMemory();
     evaluation_.bytes["package_disk"] = package_.bytesOnDisk();
+    if (!options_.ablation) return;
+    for (const int components : {1, 2, 3, 4, 8}) {
+      evaluation_.ablation_bytes["pca"][components] = textures * (static_cast<std::uint64_t>(components) + 1);
+    }
   }
 
-  const Capture capture_;
   const Package& package_;
   const EvaluateOptions& options_;
-  const CompressOptions recorded_;
-  const Device& device_;
-  Progress& progress_;
+  const Subject subject_;
+  const std::string own_method_;
+  const int picture_map_;
   BandBuffers buffers_;
   StageClock clock_;
-  Face face_;
-  MapSet maps_;
-  std::unique_ptr<UnpermutedPackage> unpermuted_;
   std::vector<Candidate> candidates_;
-  std::vector<std::byte> decoded_;
   Evaluation evaluation_;
 };
 

@@ -1,5 +1,6 @@
 #include "facezip/report.hpp"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
@@ -37,6 +38,67 @@ json permutationJson(const CompressReport& report) {
   return object;
 }
 
+json toJson(const TexelErrors& errors) {
+  // An exact result has no finite PSNR; JSON has no infinity.
+  const json psnr = std::isfinite(errors.psnr) ? json(errors.psnr) : json(nullptr);
+  return {{"rmse", errors.rmse}, {"psnr", psnr}, {"p99", errors.p99}, {"max", errors.max}};
+}
+
+json toJson(const NormalAngles& angles) { return {{"mean", angles.mean}, {"p99", angles.p99}, {"max", angles.max}}; }
+
+void addErrors(const Evaluation::Map& map, const std::vector<std::string>& expressions, json& entry) {
+  entry["rmse"] = json::object();
+  entry["per_expression"] = json::object();
+  for (const auto& [method, errors] : map.rmse) {
+    entry["rmse"][method] = errors.pooled;
+    for (std::size_t n = 0; n < errors.per_expression.size(); ++n) {
+      entry["per_expression"][expressions[n]][method] = errors.per_expression[n];
+    }
+  }
+}
+
+/// Writes errors of all expressions to entry[pooled][METHOD] and of each to entry[each][NAME][METHOD].
+template <typename Value>
+void addPooledAndEach(const std::map<std::string, PooledAndEach<Value>>& methods,
+                      const std::vector<std::string>& expressions, const char* pooled, const char* each, json& entry) {
+  for (const auto& [method, values] : methods) {
+    entry[pooled][method] = toJson(values.pooled);
+    for (std::size_t n = 0; n < values.per_expression.size(); ++n) {
+      entry[each][expressions[n]][method] = toJson(values.per_expression[n]);
+    }
+  }
+}
+
+void addAblation(const Evaluation::Map& map, const Evaluation& evaluation, json& entry) {
+  for (const auto& [method, by_differences] : map.ablation) {
+    for (const auto& [differences, rmse] : by_differences) {
+      entry["ablation"][method][std::to_string(differences)] = {
+          {"rmse", rmse}, {"bytes", evaluation.ablation_bytes.at(method).at(differences)}};
+    }
+  }
+}
+
+json mapJson(const Evaluation::Map& map, const Evaluation& evaluation) {
+  json entry = {{"rms_difference", map.rms_difference}};
+  addErrors(map, evaluation.expressions, entry);
+  addPooledAndEach(map.detail, evaluation.expressions, "detail_pooled", "detail", entry);
+  addPooledAndEach(map.angles, evaluation.expressions, "angle", "angle_per_expression", entry);
+  for (const auto& [method, errors] : map.blends) {
+    entry["blends"][method] = {{"rmse", errors.rmse}, {"largest_share_of_bound", errors.largest_share_of_bound}};
+  }
+  addAblation(map, evaluation, entry);
+  return entry;
+}
+
+/// A weight vector by name, without the expressions at 0.
+json weightsJson(const std::vector<float>& weights, const std::vector<std::string>& expressions) {
+  json object = json::object();
+  for (std::size_t n = 0; n < weights.size(); ++n) {
+    if (weights[n] != 0.0f) object[expressions[n]] = weights[n];
+  }
+  return object;
+}
+
 }  // namespace
 
 std::string toJson(const CompressReport& report) {
@@ -68,20 +130,17 @@ std::string toJson(const CompressReport& report) {
 std::string toJson(const Evaluation& evaluation) {
   json object = {{"facezip_report", "evaluate"},
                  {"version", kReportVersion},
+                 {"method", evaluation.method},
+                 {"differences", evaluation.differences},
                  {"expressions", evaluation.expressions},
                  {"covered_texels", evaluation.covered_texels},
                  {"maps", json::object()},
                  {"bytes", evaluation.bytes},
+                 {"blend_weights", json::array()},
                  {"seconds", secondsJson(evaluation.seconds)}};
-  for (const Evaluation::Map& map : evaluation.maps) {
-    json entry = {{"rms_difference", map.rms_difference}, {"rmse", json::object()}, {"per_expression", json::object()}};
-    for (const auto& [method, errors] : map.rmse) {
-      entry["rmse"][method] = errors.pooled;
-      for (std::size_t n = 0; n < evaluation.expressions.size(); ++n) {
-        entry["per_expression"][evaluation.expressions[n]][method] = errors.per_expression[n];
-      }
-    }
-    object["maps"][map.name] = std::move(entry);
+  for (const Evaluation::Map& map : evaluation.maps) object["maps"][map.name] = mapJson(map, evaluation);
+  for (const std::vector<float>& weights : evaluation.blend_weights) {
+    object["blend_weights"].push_back(weightsJson(weights, evaluation.expressions));
   }
   return object.dump(2) + "\n";
 }

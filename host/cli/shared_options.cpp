@@ -45,12 +45,24 @@ void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
                   "no-permutation: its ablation")
       ->check(CLI::IsMember({"refined", "closed-loop", "paper", "no-permutation"}))
       ->capture_default_str();
+  CLI::Option* differences = command
+                                 .add_option("--differences", options.differences,
+                                             "Difference textures of a map, and weights of a cell: 1 to 8")
+                                 ->capture_default_str();
+  CLI::Option* scale = command
+                           .add_option("--weight-scale", options.weight_scale,
+                                       "Texels of the largest map per weight texel, along each axis")
+                           ->capture_default_str();
   command
-      .add_option("--differences", options.differences, "Difference textures of a map, and weights of a cell: 1 to 8")
-      ->capture_default_str();
-  command
-      .add_option("--weight-scale", options.weight_scale, "Texels of the largest map per weight texel, along each axis")
-      ->capture_default_str();
+      .add_option("--target-rmse", arguments.target_rmse,
+                  "Find the smallest package of at most this error (0..255), instead of the two above")
+      ->check(CLI::PositiveNumber)
+      ->excludes(differences)
+      ->excludes(scale);
+  command.add_option("--budget", arguments.budget, "Find the best package within this run-time memory, such as 40MiB")
+      ->type_name("SIZE")
+      ->excludes(differences)
+      ->excludes(scale);
   command.add_flag("--weights-per-map", options.weights_per_map, "Give every map weights of its own");
   CLI::Option* radius =
       command
@@ -98,6 +110,8 @@ CompressOptions parseCompressOptions(const CompressArguments& arguments) {
   } catch (const InputError& error) {
     throw error.in("--mask-radius " + arguments.mask_radius);
   }
+  if (arguments.target_rmse > 0.0) options.target_rmse = arguments.target_rmse;
+  if (!arguments.budget.empty()) options.budget_bytes = parseBytes("--budget", arguments.budget);
   if (arguments.masks > 0) options.masks = arguments.masks;
   if (arguments.gutter >= 0) options.gutter = arguments.gutter;
   if (!arguments.unit.empty()) {

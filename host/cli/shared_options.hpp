@@ -22,6 +22,8 @@ struct CompressArguments {
   std::string permutation_solver = "best";
   std::string mask_radius = "3cm";
   int masks = 0;
+  double target_rmse = 0.0;  ///< 0: none
+  std::string budget;
   std::string unit;
   std::string memory = "2GiB";
   int gutter = -1;

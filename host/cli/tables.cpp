@@ -132,7 +132,24 @@ void printPermutation(const CompressReport& report) {
 
 }  // namespace
 
+namespace {
+
+/// What a target or budget was chosen from, and what was taken.
+void printRateCurve(const CompressReport& report) {
+  if (report.rate_curve.empty()) return;
+  fmt::print("{:<14}{:>12}{:>12}{:>16}\n", "differences", "weights at", "memory", "expected RMSE");
+  for (const RatePoint& point : report.rate_curve) {
+    const bool chosen = point.differences == report.differences && point.weight_scale == report.weight_scale;
+    fmt::print("{:<14}{:>12}{:>12}{:>16.3f}{}\n", point.differences, fmt::format("1/{}", point.weight_scale),
+               formatMegabytes(point.bytes), point.rmse, chosen ? "  <- taken" : "");
+  }
+  fmt::print("\n");
+}
+
+}  // namespace
+
 void printCompressReport(const CompressReport& report) {
+  printRateCurve(report);
   fmt::print("{} masks, {} overlapping pairs, {} covered texels\n", report.masks, report.overlapping_pairs,
              report.covered_texels);
   fmt::print("mask tails cut: {:.2f} % of a vertex's weight on average, {:.1f} % at most; {:.1f} masks at a vertex\n",

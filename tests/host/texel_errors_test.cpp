@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "evaluate/covered_texels.hpp"
+#include "compress/covered_texels.hpp"
 #include "small_capture.hpp"
 
 namespace facezip {
@@ -46,7 +46,7 @@ TEST(CoveredTexels, AreInsideTheBandOfAnyWeightAndInOrder) {
     }
   }
   std::sort(expected.begin(), expected.end());
-  EXPECT_EQ(evaluate::coveredTexels(shape, tiles), expected);
+  EXPECT_EQ(compress::coveredTexels(shape, tiles), expected);
 }
 
 class Values : public testing::TestWithParam<image::SampleType> {};
@@ -54,7 +54,7 @@ class Values : public testing::TestWithParam<image::SampleType> {};
 TEST_P(Values, AreInUnitsOf255) {
   const auto image = test::makeImage({9, 7, 3, GetParam()}, [](int x, int y, int c) { return 10.0 + x + 3 * y + c; });
   std::vector<float> values(9 * 7 * 3);
-  evaluate::toValues(image.samples, GetParam(), values);
+  compress::toValues(image.samples, GetParam(), values);
   for (int i = 0; i < 9 * 7 * 3; ++i) {
     const int texel = i / 3;
     EXPECT_NEAR(values[static_cast<std::size_t>(i)], 10.0 + texel % 9 + 3 * (texel / 9) + i % 3, 1e-4);

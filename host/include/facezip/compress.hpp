@@ -33,6 +33,11 @@ struct CompressOptions {
   };
   Method method = Method::kRefined;
   int differences = 4;  ///< C, difference textures of every map and weight channels of every expression; 1 to 8
+  /// Instead of `differences` and `weight_scale`, with kRefined: the smallest package of at most this RMSE (pooled over
+  /// maps by their metric weights, in 1/255), and no larger than this in run-time memory; with a budget alone the best
+  /// package within it. What they cost is estimated while the textures are read the first time.
+  std::optional<double> target_rmse;
+  std::optional<std::uint64_t> budget_bytes;
   /// A set of weights for every map, instead of one that all share.
   bool weights_per_map = false;
   int weight_scale = 8;  ///< texels of the largest map per weight cell, per axis; 1 to 64
@@ -55,8 +60,20 @@ struct CompressOptions {
   std::optional<int> gutter;  ///< texels; default max(16, side / 64)
 };
 
+/// A number of difference textures and a weight scale, with what they cost.
+struct RatePoint {
+  int differences = 0;      ///< C
+  int weight_scale = 0;     ///< texels of the largest map per weight cell, per axis
+  std::uint64_t bytes = 0;  ///< run-time memory, as Package::bytesInMemory() counts it
+  double rmse = 0.0;        ///< estimate, in 1/255, pooled over the maps by their metric weights
+};
+
 /// What a compression did, for --report and for tests.
 struct CompressReport {
+  int differences = 0;   ///< C
+  int weight_scale = 0;  ///< texels of the largest map per weight cell, per axis
+  /// What a target or budget was chosen from: rising bytes, falling RMSE. Empty where neither was asked for.
+  std::vector<RatePoint> rate_curve;
   int masks = 0;             ///< K
   double mask_radius = 0.0;  ///< in the mesh's unit
   std::string unit;          ///< of the mesh

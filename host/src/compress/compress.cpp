@@ -20,6 +20,7 @@
 #include "compress/method_record.hpp"
 #include "compress/package_output.hpp"
 #include "compress/permutation_solver.hpp"
+#include "compress/rate_estimate.hpp"
 #include "compress/refinement.hpp"
 #include "compress/seam_cost.hpp"
 #include "compress/stage_clock.hpp"
@@ -61,6 +62,11 @@ void requireSaneOptions(const CompressOptions& options) {
           fmt::format("{}", options.weight_scale));
   require(options.differences >= 1 && options.differences <= 8, "--differences", "1 to 8",
           fmt::format("{}", options.differences));
+  const bool chooses = options.target_rmse || options.budget_bytes;
+  require(!options.target_rmse || *options.target_rmse > 0.0, "--target-rmse", "above 0",
+          fmt::format("{}", options.target_rmse.value_or(0.0)));
+  require(!chooses || options.method == Method::kRefined, "--method", "refined, with a target or budget",
+          "another method");
   require(options.restarts >= 1, "--restarts", "at least 1", fmt::format("{}", options.restarts));
   require(options.cluster_restarts >= 1, "--cluster-restarts", "at least 1",
           fmt::format("{}", options.cluster_restarts));
@@ -94,8 +100,13 @@ class Compression {
     readGeometry();
     openTextures();
     accumulateGrams();
-    for (WeightGroup& group : groups_) assign(group);
-    solveAndWrite();
+    do {
+      layGrid();
+      for (WeightGroup& group : groups_) assign(group);
+      solveAndWrite();
+    } while (missesTarget());
+    report_.differences = options_.differences;
+    report_.weight_scale = options_.weight_scale;
     report_.package_disk_bytes = diskBytes();
     staged_.commit();
     clock_.book("publishing");
@@ -132,29 +143,104 @@ class Compression {
     clock_.book("masks");
   }
 
-  // Textures, the weight grid, and how large a band may be.
+  // Textures, and how large a band may be.
   void openTextures() {
-    maps_ = openMaps(capture_, face_, options_.weight_scale, options_.gutter);
-    const raster::UvRaster& reference = *maps_.maps[maps_.reference].raster;
-    progress_.stage("weight grid", 0);
-    grid_ = raster::makeWeightGrid(*texel_masks_, reference, options_.weight_scale);
-    clock_.book("weight grid");
+    maps_ = openMaps(capture_, face_, options_.gutter);
+    if (choosesRate()) {
+      openRates();
+    } else {
+      assignWeightScales(maps_, options_.weight_scale);
+    }
     planBands();
     groups_.resize(options_.weights_per_map ? maps_.maps.size() : 1);
     for (std::size_t m = 0; m < maps_.maps.size(); ++m) {
       groups_[options_.weights_per_map ? m : 0].maps.push_back(&maps_.maps[m]);
     }
+    clock_.book("weight grid");
+  }
+
+  // The weight grid: masks at its cells.
+  void layGrid() {
+    if (choosesRate()) chooseRate();
+    assignWeightScales(maps_, options_.weight_scale);
+    progress_.stage("weight grid", 0);
+    grid_ = raster::makeWeightGrid(*texel_masks_, *maps_.maps[maps_.reference].raster, options_.weight_scale);
+    clock_.book("weight grid");
     if (expressions() <= options_.differences) {
       progress_.note(fmt::format("{} expression{}: each gets a difference texture of its own", expressions(),
                                  expressions() == 1 ? "" : "s"));
     }
   }
 
+  void openRates() {
+    rates_ = std::make_unique<RateEstimate>(maps_, expressions());
+    options_.differences = 8;  // what memory is planned for
+    options_.weight_scale = rates_->finestScale();
+    assignWeightScales(maps_, options_.weight_scale);
+  }
+
+  // Takes the number of textures and the weight scale from the curve.
+  void chooseRate() {
+    if (report_.rate_curve.empty()) {
+      report_.rate_curve = efficientPoints(rates_->curve(static_cast<int>(groups_.size())));
+    }
+    const std::span<const RatePoint> curve = report_.rate_curve;
+    const std::optional<RatePoint> chosen =
+        compress::chooseRate(curve, options_.target_rmse, options_.budget_bytes, calibration_);
+    if (!chosen) refuseRate(curve);
+    chosen_ = *chosen;
+    options_.differences = chosen_.differences;
+    options_.weight_scale = chosen_.weight_scale;
+  }
+
+  [[noreturn]] void refuseRate(std::span<const RatePoint> curve) const {
+    if (options_.budget_bytes && curve.front().bytes > *options_.budget_bytes) {
+      throw InputError({"--budget", "",
+                        fmt::format("at least {} bytes, for one difference texture", curve.front().bytes),
+                        fmt::format("{}", *options_.budget_bytes), "raise it, or compress smaller textures"});
+    }
+    std::vector<RatePoint> within(curve.begin(), curve.end());
+    if (options_.budget_bytes) {
+      std::erase_if(within, [&](const RatePoint& point) { return point.bytes > *options_.budget_bytes; });
+    }
+    const RatePoint& best = within.back();
+    throw InputError({"--target-rmse", "",
+                      fmt::format("at least {:.3f}, which {} differences with weights at 1/{} are expected to reach{}",
+                                  best.rmse * calibration_, best.differences, best.weight_scale,
+                                  options_.budget_bytes ? " within the budget" : ""),
+                      fmt::format("{}", *options_.target_rmse), ""});
+  }
+
+  /// True if the package that was written misses the target: the estimate then learns from it.
+  bool missesTarget() {
+    if (!options_.target_rmse) return false;
+    double error = 0.0;
+    double samples = 0.0;
+    for (std::size_t m = 0; m < maps_.maps.size(); ++m) {
+      const OpenMap& map = maps_.maps[m];
+      const double weight = map.source->metric_weight * coveredTexels(map) * map.samples->shape().channels;
+      error += weight * report_.rmse[m].second * report_.rmse[m].second;
+      samples += weight;
+    }
+    const double rmse = std::sqrt(error / samples);
+    if (rmse <= *options_.target_rmse) return false;
+    progress_.note(fmt::format("{} differences with weights at 1/{} reach {:.3f}, not {:.3f}: trying more",
+                               options_.differences, options_.weight_scale, rmse, *options_.target_rmse));
+    calibration_ = std::max(rmse / chosen_.rmse, calibration_ * 1.001);
+    return true;
+  }
+
+  bool choosesRate() const { return options_.target_rmse || options_.budget_bytes; }
+
   /// What stays from pass to pass: weights as codes and as halves, and the masks of the cells.
   std::uint64_t residentBytes() const {
-    const std::uint64_t cells = grid_.cells.cells();
-    return cells * static_cast<std::uint64_t>(expressions() * options_.differences) * 4 +
-           grid_.cells.mask_index.size() * (sizeof(int) + sizeof(float)) + cells * sizeof(int);
+    constexpr std::uint64_t kMasksOfACell = 8;
+    const image::ImageShape& shape = maps_.maps[maps_.reference].samples->shape();
+    const auto scale = static_cast<std::uint64_t>(options_.weight_scale);
+    const std::uint64_t cells = (static_cast<std::uint64_t>(shape.width) + scale - 1) / scale *
+                                ((static_cast<std::uint64_t>(shape.height) + scale - 1) / scale);
+    return cells * (static_cast<std::uint64_t>(expressions() * options_.differences) * 4 +
+                    kMasksOfACell * (sizeof(int) + sizeof(float)) + sizeof(int));
   }
 
   void planBands() {
@@ -234,6 +320,7 @@ class Compression {
         };
         forEachBand(*map, "Gram matrices", make_tiles, [&](const MapBand& band) {
           accumulator.add(band.tiles, band.differences, band.shape, map->source->metric_weight);
+          if (rates_) rates_->addBand(static_cast<std::size_t>(map - maps_.maps.data()), band);
           covered +=
               static_cast<std::uint64_t>(std::count_if(band.masks.texel_weights.begin(), band.masks.texel_weights.end(),
                                                        [](float weight) { return weight > 0.0f; }));
@@ -445,7 +532,7 @@ class Compression {
   }
 
   const Capture& capture_;
-  const CompressOptions& options_;
+  CompressOptions options_;  ///< differences and weight_scale may be chosen on the way
   device::DeviceContext& context_;
   Progress& progress_;
   io::StagedDirectory staged_;
@@ -458,6 +545,9 @@ class Compression {
   MapSet maps_;
   raster::WeightGrid grid_;
   std::optional<Importance> importance_;
+  std::unique_ptr<RateEstimate> rates_;  ///< where a target or budget was given
+  RatePoint chosen_;
+  double calibration_ = 1.0;  ///< error that was measured over what the estimate had said
   std::vector<WeightGroup> groups_;
   std::vector<std::uint64_t> covered_texels_;  ///< of every map
 };

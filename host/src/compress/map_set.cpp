@@ -16,30 +16,9 @@ int scaleOf(int side, int reference_side, int weight_scale) {
   return texels % reference_side == 0 ? static_cast<int>(texels / reference_side) : 0;
 }
 
-void assignWeightScales(MapSet& set, int weight_scale) {
-  const image::ImageShape& reference = set.maps[set.reference].samples->shape();
-  for (OpenMap& map : set.maps) {
-    const image::ImageShape& shape = map.samples->shape();
-    const int across = scaleOf(shape.width, reference.width, weight_scale);
-    const int down = scaleOf(shape.height, reference.height, weight_scale);
-    const auto cells = [](int side, int scale) { return (side + scale - 1) / scale; };
-    const bool same_grid = across > 0 && across == down &&
-                           cells(shape.width, across) == cells(reference.width, weight_scale) &&
-                           cells(shape.height, down) == cells(reference.height, weight_scale);
-    if (!same_grid) {
-      throw InputError(
-          {map.source->neutral.string(), fmt::format("map \"{}\"", map.source->name),
-           fmt::format("a size that divides the {} x {} of map \"{}\" by a factor of --weight-scale {}",
-                       reference.width, reference.height, set.maps[set.reference].source->name, weight_scale),
-           fmt::format("{} x {}", shape.width, shape.height), "resize the map"});
-    }
-    map.weight_scale = across;
-  }
-}
-
 }  // namespace
 
-MapSet openMaps(const Capture& capture, const Face& face, int weight_scale, std::optional<int> gutter) {
+MapSet openMaps(const Capture& capture, const Face& face, std::optional<int> gutter) {
   MapSet set;
   std::map<std::pair<int, int>, std::shared_ptr<const raster::UvRaster>> rasters;
   for (const CaptureMap& source : capture.maps) {
@@ -59,8 +38,28 @@ MapSet openMaps(const Capture& capture, const Face& face, int weight_scale, std:
       set.reference = set.maps.size() - 1;
     }
   }
-  assignWeightScales(set, weight_scale);
   return set;
+}
+
+void assignWeightScales(MapSet& set, int weight_scale) {
+  const image::ImageShape& reference = set.maps[set.reference].samples->shape();
+  for (OpenMap& map : set.maps) {
+    const image::ImageShape& shape = map.samples->shape();
+    const int across = scaleOf(shape.width, reference.width, weight_scale);
+    const int down = scaleOf(shape.height, reference.height, weight_scale);
+    const auto cells = [](int side, int scale) { return (side + scale - 1) / scale; };
+    const bool same_grid = across > 0 && across == down &&
+                           cells(shape.width, across) == cells(reference.width, weight_scale) &&
+                           cells(shape.height, down) == cells(reference.height, weight_scale);
+    if (!same_grid) {
+      throw InputError(
+          {map.source->neutral.string(), fmt::format("map \"{}\"", map.source->name),
+           fmt::format("a size that divides the {} x {} of map \"{}\" by a factor of --weight-scale {}",
+                       reference.width, reference.height, set.maps[set.reference].source->name, weight_scale),
+           fmt::format("{} x {}", shape.width, shape.height), "resize the map"});
+    }
+    map.weight_scale = across;
+  }
 }
 
 }  // namespace facezip::compress

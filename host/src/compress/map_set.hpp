@@ -26,10 +26,14 @@ struct MapSet {
       0;  ///< the largest map, whose texels weight_scale counts; the weight grid is made at its size
 };
 
-/// Opens every texture of the capture, checks them and makes one raster per size.
+/// Opens every texture of the capture, checks them and makes one raster per size. Weight scales are left open.
+/// gutter  texels; none: max(16, side / 64)
+/// Throws InputError: a texture that does not fit its neutral.
+MapSet openMaps(const Capture& capture, const Face& face, std::optional<int> gutter);
+
+/// Sets the weight scale of every map.
 /// weight_scale  of the largest map; the others' follow, since all maps share one weight grid
-/// gutter        texels; none: max(16, side / 64)
-/// Throws InputError: a texture that does not fit its neutral, maps whose sizes do not share a weight grid.
-MapSet openMaps(const Capture& capture, const Face& face, int weight_scale, std::optional<int> gutter);
+/// Throws InputError: maps whose sizes do not share a weight grid at that scale.
+void assignWeightScales(MapSet& set, int weight_scale);
 
 }  // namespace facezip::compress

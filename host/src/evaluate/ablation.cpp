@@ -4,9 +4,9 @@
 
 #include <vector>
 
+#include "compress/covered_texels.hpp"
 #include "compress/map_bands.hpp"
 #include "evaluate/baseline_packages.hpp"
-#include "evaluate/covered_texels.hpp"
 #include "evaluate/map_measurement.hpp"
 #include "raster/texel_masks.hpp"
 
@@ -30,7 +30,7 @@ std::vector<double> measurePackage(const Subject& subject, const Package& packag
     MapMeasurement measurement(decoders, subject.expressions(), {});
     map.samples->forEachBand(bandRows(subject, map, decoders, 0), subject.progress, [&](const image::SampleBand& band) {
       const compress::BandShape shape = compress::bandShape(*map.samples, band.end - band.begin);
-      const auto texels = coveredTexels(shape, raster::coverageTiles(*map.raster, band.begin, band.end));
+      const auto texels = compress::coveredTexels(shape, raster::coverageTiles(*map.raster, band.begin, band.end));
       measurement.addBand(band.begin, band.end, band.samples, shape, texels);
       subject.progress.advance(static_cast<std::size_t>(band.end));
     });

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "compress/counter_hash.hpp"
-#include "evaluate/covered_texels.hpp"
+#include "compress/covered_texels.hpp"
 
 namespace facezip::evaluate {
 namespace {
@@ -54,7 +54,7 @@ void blendSamples(std::span<const std::byte> samples, const compress::BandShape&
   const float unit = image::unit255(shape.sample_type);
   const auto* neutral = reinterpret_cast<const Sample*>(samples.data());
   const auto channels = static_cast<std::size_t>(shape.channels);
-  forEachChunk(texels.size(), [&](std::size_t begin, std::size_t end) {
+  compress::forEachChunk(texels.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       for (std::size_t at = texels[i] * channels; at < (texels[i] + std::size_t{1}) * channels; ++at) {
         const float base = static_cast<float>(neutral[at]);

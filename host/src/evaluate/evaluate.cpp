@@ -7,14 +7,14 @@
 #include <memory>
 #include <optional>
 
+#include "compress/block_rank_energy.hpp"
+#include "compress/covered_texels.hpp"
 #include "compress/gram.hpp"
 #include "compress/map_bands.hpp"
 #include "compress/stage_clock.hpp"
 #include "evaluate/ablation.hpp"
 #include "evaluate/baseline_packages.hpp"
 #include "evaluate/blend_error.hpp"
-#include "evaluate/block_limit.hpp"
-#include "evaluate/covered_texels.hpp"
 #include "evaluate/error_pictures.hpp"
 #include "evaluate/map_measurement.hpp"
 #include "evaluate/normal_angle.hpp"

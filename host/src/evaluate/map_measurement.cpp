@@ -1,7 +1,7 @@
 #include "evaluate/map_measurement.hpp"
 
+#include "compress/covered_texels.hpp"
 #include "evaluate/blend_error.hpp"
-#include "evaluate/covered_texels.hpp"
 #include "evaluate/normal_angle.hpp"
 #include "evaluate/texel_errors.hpp"
 
@@ -39,7 +39,7 @@ void MapMeasurement::addBand(int begin, int end, std::span<const std::byte> samp
   for (PackageDecoder* decoder : decoders_) decoder->loadRows(begin, end);
   for (int image = 0; image <= expressions_; ++image) {
     if (image == 0 && wanted_.pictures == nullptr) continue;
-    toValues(bandImage(samples, shape, image), shape.sample_type, captured_);
+    compress::toValues(compress::bandImage(samples, shape, image), shape.sample_type, captured_);
     if (wanted_.pictures != nullptr) wanted_.pictures->addCaptured(image, begin, shape, captured_);
     for (std::size_t d = 0; image > 0 && d < decoders_.size(); ++d) addExpression(d, image - 1, begin, shape, texels);
   }

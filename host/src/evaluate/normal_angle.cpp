@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "evaluate/covered_texels.hpp"
+#include "compress/covered_texels.hpp"
 
 namespace facezip::evaluate {
 namespace {
@@ -34,7 +34,7 @@ void normalAngles(std::span<const float> decoded, std::span<const float> capture
                   std::span<const std::uint32_t> texels, std::span<float> angles) {
   assert(channels >= 3 && decoded.size() == captured.size() && angles.size() == texels.size());
   const auto stride = static_cast<std::size_t>(channels);
-  forEachChunk(texels.size(), [&](std::size_t begin, std::size_t end) {
+  compress::forEachChunk(texels.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::Vector3d a = unitNormal(decoded.data() + texels[i] * stride);
       const Eigen::Vector3d b = unitNormal(captured.data() + texels[i] * stride);

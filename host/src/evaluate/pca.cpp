@@ -3,8 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
-#include "evaluate/band_differences.hpp"
-#include "evaluate/covered_texels.hpp"
+#include "compress/band_differences.hpp"
+#include "compress/covered_texels.hpp"
 
 namespace facezip::evaluate {
 
@@ -38,7 +38,7 @@ Eigen::MatrixXf pcaTexelErrors(std::span<const std::byte> samples, const compres
   tbb::parallel_for(std::size_t{0}, (texels.size() + kRows - 1) / kRows, [&](std::size_t chunk) {
     const std::size_t begin = chunk * kRows;
     const std::size_t count = std::min(kRows, texels.size() - begin);
-    const Eigen::MatrixXf residual = gatherDifferences(samples, shape, texels.subspan(begin, count)) * left;
+    const Eigen::MatrixXf residual = compress::gatherDifferences(samples, shape, texels.subspan(begin, count)) * left;
     for (Eigen::Index n = 0; n < residual.cols(); ++n) {
       const Eigen::Map<const Eigen::MatrixXf> by_texel(residual.col(n).data(), channels,
                                                        static_cast<Eigen::Index>(count));

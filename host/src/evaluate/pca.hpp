@@ -20,7 +20,7 @@ Eigen::MatrixXd pcaProjector(const Eigen::MatrixXd& gram, int components);
 
 /// Errors that the projection leaves at some texels: #texels x N, root mean square over channels, in 1/255.
 /// samples  neutral, then expressions, as a MapBand has them
-/// texels   as coveredTexels() gives them
+/// texels   as compress::coveredTexels() gives them
 Eigen::MatrixXf pcaTexelErrors(std::span<const std::byte> samples, const compress::BandShape& shape,
                                std::span<const std::uint32_t> texels, const Eigen::MatrixXd& projector);
 

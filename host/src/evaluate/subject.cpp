@@ -60,7 +60,9 @@ void requireSameShape(const compress::OpenMap& map, const PackageMap& packed, co
 }
 
 compress::MapSet openMaps(const Subject& subject) {
-  return compress::openMaps(subject.capture, subject.face, subject.recorded.weight_scale, 0);
+  compress::MapSet maps = compress::openMaps(subject.capture, subject.face, 0);
+  assignWeightScales(maps, subject.recorded.weight_scale);
+  return maps;
 }
 
 int bandRows(const Subject& subject, const compress::OpenMap& map, const std::vector<PackageDecoder*>& decoders,

@@ -3,7 +3,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "evaluate/covered_texels.hpp"
+#include "compress/covered_texels.hpp"
 
 namespace facezip::evaluate {
 
@@ -12,7 +12,7 @@ void texelErrors(std::span<const float> decoded, std::span<const float> captured
   assert(decoded.size() == captured.size() && errors.size() == texels.size());
   const auto stride = static_cast<std::size_t>(channels);
   const float share = 1.0f / static_cast<float>(channels);
-  forEachChunk(texels.size(), [&](std::size_t begin, std::size_t end) {
+  compress::forEachChunk(texels.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t first = texels[i] * stride;
       float sum = 0.0f;

@@ -11,7 +11,7 @@ namespace facezip::evaluate {
 
 /// errors[i] = root mean square over the channels of decoded - captured at texels[i]. Their root mean square over
 /// texels is that over texels and channels. decoded, captured  interleaved values of a band, in units of 1/255 texels
-/// indices as coveredTexels() gives them; errors  as many
+/// indices as compress::coveredTexels() gives them; errors  as many
 void texelErrors(std::span<const float> decoded, std::span<const float> captured, int channels,
                  std::span<const std::uint32_t> texels, std::span<float> errors);
 

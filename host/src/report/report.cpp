@@ -115,12 +115,21 @@ std::string toJson(const CompressReport& report) {
        {{"mean", report.cut_mass_mean}, {"max", report.cut_mass_max}, {"active_masks", report.active_masks_mean}}},
       {"overlapping_pairs", report.overlapping_pairs},
       {"permutation", permutationJson(report)},
+      {"differences", report.differences},
+      {"weight_scale", report.weight_scale},
+      {"rate_curve", json::array()},
       {"rmse", json::object()},
       {"refinement", {{"squared_errors", report.refinement_errors}}},
       {"band_rows", report.band_rows},
       {"later_passes", report.decoded},
       {"bytes", {{"package_disk", report.package_disk_bytes}, {"peak_memory", report.peak_memory_bytes}}},
       {"seconds", secondsJson(report.seconds)}};
+  for (const RatePoint& point : report.rate_curve) {
+    object["rate_curve"].push_back({{"differences", point.differences},
+                                    {"weight_scale", point.weight_scale},
+                                    {"bytes", point.bytes},
+                                    {"rmse", point.rmse}});
+  }
   for (const auto& [map, rmse] : report.rmse) object["rmse"][map] = rmse;
   object["seconds"]["waiting for textures"] = report.wait_seconds;
   object["seconds"]["decoding textures"] = report.decode_seconds;

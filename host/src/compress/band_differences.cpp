@@ -1,10 +1,10 @@
-#include "evaluate/band_differences.hpp"
+#include "compress/band_differences.hpp"
 
-namespace facezip::evaluate {
+namespace facezip::compress {
 namespace {
 
 template <typename Sample>
-void gather(std::span<const std::byte> samples, const compress::BandShape& shape, std::span<const std::uint32_t> texels,
+void gather(std::span<const std::byte> samples, const BandShape& shape, std::span<const std::uint32_t> texels,
             Eigen::MatrixXf& differences) {
   const auto* neutral = reinterpret_cast<const Sample*>(samples.data());
   const auto channels = static_cast<std::size_t>(shape.channels);
@@ -23,7 +23,7 @@ void gather(std::span<const std::byte> samples, const compress::BandShape& shape
 
 }  // namespace
 
-Eigen::MatrixXf gatherDifferences(std::span<const std::byte> samples, const compress::BandShape& shape,
+Eigen::MatrixXf gatherDifferences(std::span<const std::byte> samples, const BandShape& shape,
                                   std::span<const std::uint32_t> texels) {
   Eigen::MatrixXf differences(static_cast<Eigen::Index>(texels.size()) * shape.channels, shape.expressions);
   switch (shape.sample_type) {
@@ -40,4 +40,4 @@ Eigen::MatrixXf gatherDifferences(std::span<const std::byte> samples, const comp
   return differences;
 }
 
-}  // namespace facezip::evaluate
+}  // namespace facezip::compress

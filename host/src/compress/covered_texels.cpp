@@ -1,11 +1,9 @@
-#include "evaluate/covered_texels.hpp"
+#include "compress/covered_texels.hpp"
 
 #include <cassert>
 
-namespace facezip::evaluate {
+namespace facezip::compress {
 namespace {
-using compress::kTileSide;
-using compress::kTileTexels;
 
 template <typename Sample>
 void convert(std::span<const std::byte> samples, float unit, std::span<float> out) {
@@ -17,7 +15,7 @@ void convert(std::span<const std::byte> samples, float unit, std::span<float> ou
 
 }  // namespace
 
-std::vector<std::uint32_t> coveredTexels(const compress::BandShape& shape, const compress::TileMasks& covered) {
+std::vector<std::uint32_t> coveredTexels(const BandShape& shape, const TileMasks& covered) {
   std::vector<std::uint32_t> texels;
   for (std::size_t t = 0; t < covered.tiles.size(); ++t) {
     const float* weights = covered.texel_weights.data() + t * kTileTexels;
@@ -47,9 +45,9 @@ void toValues(std::span<const std::byte> samples, image::SampleType type, std::s
   convert<float>(samples, unit, out);
 }
 
-std::span<const std::byte> bandImage(std::span<const std::byte> samples, const compress::BandShape& shape, int image) {
+std::span<const std::byte> bandImage(std::span<const std::byte> samples, const BandShape& shape, int image) {
   const std::size_t bytes = samples.size() / static_cast<std::size_t>(shape.expressions + 1);
   return samples.subspan(static_cast<std::size_t>(image) * bytes, bytes);
 }
 
-}  // namespace facezip::evaluate
+}  // namespace facezip::compress

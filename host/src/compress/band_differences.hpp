@@ -8,12 +8,12 @@
 
 #include "compress/tile_band.hpp"
 
-namespace facezip::evaluate {
+namespace facezip::compress {
 
 /// Delta_n in units of 1/255: (texel, channel) x N, channels of a texel one below the other.
 /// samples  neutral, then expressions, as a MapBand has them
 /// texels   row * width + column of the band
-Eigen::MatrixXf gatherDifferences(std::span<const std::byte> samples, const compress::BandShape& shape,
+Eigen::MatrixXf gatherDifferences(std::span<const std::byte> samples, const BandShape& shape,
                                   std::span<const std::uint32_t> texels);
 
-}  // namespace facezip::evaluate
+}  // namespace facezip::compress

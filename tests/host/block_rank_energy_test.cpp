@@ -1,4 +1,4 @@
-#include "evaluate/block_limit.hpp"
+#include "compress/block_rank_energy.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 
 namespace facezip {
 namespace {
-using evaluate::BlockRankEnergy;
-using evaluate::RankEnergy;
+using compress::BlockRankEnergy;
+using compress::RankEnergy;
 
 /// Float samples of a map: neutral and N expressions, in units of full scale.
 struct RandomMap {

@@ -1,4 +1,4 @@
-// block_limit.hpp - what the best C components of every block of texels would leave, for all C at once.
+// block_rank_energy.hpp - what the best C components of every block of texels would leave, for all C at once.
 //   E_C = sum over blocks of sum over j > C of s_j^2,  s_1 >= s_2 >= ... the singular values of the block's differences
 // A block of s x s texels that has weights of its own, C of them an expression, and C difference textures is a matrix
 // of rank C (Eckart and Young 1936). Weight maps are interpolated between cells, so a package is not bound by it in the
@@ -14,7 +14,7 @@
 
 #include "compress/tile_band.hpp"
 
-namespace facezip::evaluate {
+namespace facezip::compress {
 
 /// Residual energy of one block size.
 struct RankEnergy {
@@ -39,7 +39,7 @@ class BlockRankEnergy {
   /// Adds rows [begin_row, begin_row + shape.rows): bands come in rising order and leave no row out.
   /// samples  neutral, then expressions, as a MapBand has them
   /// texels   the covered ones, as coveredTexels() gives them
-  void addBand(int begin_row, std::span<const std::byte> samples, const compress::BandShape& shape,
+  void addBand(int begin_row, std::span<const std::byte> samples, const BandShape& shape,
                std::span<const std::uint32_t> texels);
 
   /// One per side, when all rows were added.
@@ -60,8 +60,8 @@ class BlockRankEnergy {
 
   bool keepsSamples() const;
   bool isSampled(int block_x, int block_y) const;
-  void addRows(int begin_row, int band_row, int end_row, std::span<const std::byte> samples,
-               const compress::BandShape& shape, const std::vector<std::uint8_t>& covered);
+  void addRows(int begin_row, int band_row, int end_row, std::span<const std::byte> samples, const BandShape& shape,
+               const std::vector<std::uint8_t>& covered);
   void addDifferences(Block& block, const Eigen::MatrixXf& differences) const;
   void closeRow(std::size_t level);
   void foldInto(Level& larger, const Level& smaller) const;
@@ -75,4 +75,4 @@ class BlockRankEnergy {
   std::vector<RankEnergy> energies_;
 };
 
-}  // namespace facezip::evaluate
+}  // namespace facezip::compress

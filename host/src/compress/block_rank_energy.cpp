@@ -1,4 +1,4 @@
-#include "evaluate/block_limit.hpp"
+#include "compress/block_rank_energy.hpp"
 
 #include <tbb/parallel_for.h>
 
@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cassert>
 
-#include "evaluate/band_differences.hpp"
+#include "compress/band_differences.hpp"
 
-namespace facezip::evaluate {
+namespace facezip::compress {
 namespace {
 
 using Residual = std::array<double, RankEnergy::kMostComponents + 1>;
@@ -82,7 +82,7 @@ void BlockRankEnergy::addDifferences(Block& block, const Eigen::MatrixXf& differ
 
 // Rows [band_row, end_row) of the band, which lie in one row of the smallest blocks.
 void BlockRankEnergy::addRows(int begin_row, int band_row, int end_row, std::span<const std::byte> samples,
-                              const compress::BandShape& shape, const std::vector<std::uint8_t>& covered) {
+                              const BandShape& shape, const std::vector<std::uint8_t>& covered) {
   Level& level = levels_.front();
   tbb::parallel_for(std::size_t{0}, level.blocks.size(), [&](std::size_t b) {
     const int block_x = static_cast<int>(b);
@@ -94,7 +94,7 @@ void BlockRankEnergy::addRows(int begin_row, int band_row, int end_row, std::spa
   });
 }
 
-void BlockRankEnergy::addBand(int begin_row, std::span<const std::byte> samples, const compress::BandShape& shape,
+void BlockRankEnergy::addBand(int begin_row, std::span<const std::byte> samples, const BandShape& shape,
                               std::span<const std::uint32_t> texels) {
   assert(shape.width == width_ && shape.channels == channels_ && shape.expressions == expressions_);
   std::vector<std::uint8_t> covered(static_cast<std::size_t>(shape.rows) * static_cast<std::size_t>(shape.width), 0);
@@ -157,4 +157,4 @@ void BlockRankEnergy::closeRow(std::size_t level_index) {
   std::fill(level.blocks.begin(), level.blocks.end(), Block());
 }
 
-}  // namespace facezip::evaluate
+}  // namespace facezip::compress

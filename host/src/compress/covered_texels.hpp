@@ -11,17 +11,17 @@
 
 #include "compress/tile_band.hpp"
 
-namespace facezip::evaluate {
+namespace facezip::compress {
 
 /// The texels of weight above 0, each once whatever its weight, as row * width + column of the band, rising.
 /// covered  the band's tiles
-std::vector<std::uint32_t> coveredTexels(const compress::BandShape& shape, const compress::TileMasks& covered);
+std::vector<std::uint32_t> coveredTexels(const BandShape& shape, const TileMasks& covered);
 
 /// Samples as values in units of 1/255 of full scale. out  as many values as there are samples
 void toValues(std::span<const std::byte> samples, image::SampleType type, std::span<float> out);
 
 /// One image of a band: 0 the neutral, n + 1 expression n.
-std::span<const std::byte> bandImage(std::span<const std::byte> samples, const compress::BandShape& shape, int image);
+std::span<const std::byte> bandImage(std::span<const std::byte> samples, const BandShape& shape, int image);
 
 /// Runs visit(begin, end) on chunks of [0, count), side by side. Chunks do not depend on the number of threads.
 template <typename Visit>
@@ -31,4 +31,4 @@ void forEachChunk(std::size_t count, const Visit& visit) {
                     [&](std::size_t chunk) { visit(chunk * kChunk, std::min(count, (chunk + 1) * kChunk)); });
 }
 
-}  // namespace facezip::evaluate
+}  // namespace facezip::compress

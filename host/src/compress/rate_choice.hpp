@@ -1,0 +1,44 @@
+// rate_choice.hpp - how many difference textures, and weights how fine, for an error or a size that was asked for.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "facezip/compress.hpp"
+
+namespace facezip::compress {
+
+/// What the estimate needs of a map.
+struct RateMap {
+  std::uint64_t samples = 0;  ///< width x height x channels
+  int sample_bytes = 1;       ///< of the neutral
+  double metric_weight = 1.0;
+  double covered_samples = 0.0;  ///< covered texels x channels x expressions
+  double mean_square = 0.0;      ///< of the differences, per covered sample, (1/255)^2
+  /// [scale][C]: share of that energy which the best C components of every cell's texels leave, C = 0 to 8
+  std::vector<std::vector<double>> left;
+};
+
+/// The maps' size and estimated error for every number of textures 1 to 8 and every weight scale.
+///   RMSE^2 = metric-weighted mean over maps of mean_square (left + rounding)
+/// Free weights come within a few per cent of what the best C components of each cell leave; codes of 8 bits add a
+/// share of the differences' own energy (kRounding).
+/// scales        texels of the largest map per cell, as RateMap::left counts them
+/// cells         of the weight grid at each scale, times the number of weight sets
+/// expressions   N
+std::vector<RatePoint> rateCurve(std::span<const RateMap> maps, std::span<const int> scales,
+                                 std::span<const std::uint64_t> cells, int expressions);
+
+inline constexpr double kRounding = 1.5e-3;
+
+/// The points that no other beats in both size and error, rising by size.
+std::vector<RatePoint> efficientPoints(std::vector<RatePoint> curve);
+
+/// The smallest point whose error times `calibration` is at most `target`, and within `budget` bytes; without a target
+/// the best within the budget; nothing if there is none.
+std::optional<RatePoint> chooseRate(std::span<const RatePoint> efficient, std::optional<double> target,
+                                    std::optional<std::uint64_t> budget, double calibration);
+
+}  // namespace facezip::compress

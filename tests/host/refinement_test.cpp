@@ -102,14 +102,17 @@ double rmse(const fs::path& folder, const CompressOptions& options, CompressRepo
 class AnyCapture : public testing::TestWithParam<Kind> {};
 
 TEST_P(AnyCapture, RefinedIsNeverWorseThanThePaper) {
+  // In 1/255. Where the paper's result is as good as 8-bit codes allow, other codes of the same error are found, up to
+  // rounding in float32: 1e-5 at the most in these captures, of errors of 0.07 and more.
+  constexpr double kTie = 1e-4;
   const test::TemporaryDirectory folder;
   writeCapture(folder / "c", GetParam());
   for (const int differences : {1, 4}) {
     const double paper = rmse(folder.path(), optionsOf(Method::kPaper, differences));
     const double refined = rmse(folder.path(), optionsOf(Method::kRefined, differences));
-    EXPECT_LE(refined, paper + 1e-9) << differences;
+    EXPECT_LE(refined, paper + kTie) << differences;
     const double closed = rmse(folder.path(), optionsOf(Method::kClosedLoop, differences));
-    EXPECT_LE(closed, paper + 1e-9) << differences;
+    EXPECT_LE(closed, paper + kTie) << differences;
   }
 }
 

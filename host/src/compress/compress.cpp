@@ -92,7 +92,7 @@ class Compression {
         context_(device.context()),
         progress_(progress),
         staged_(package, io::StagedDirectory::Existing::kReplaceMarked, "package.json"),
-        buffers_(context_) {
+        buffers_(std::make_unique<BandBuffers>(context_)) {
     report_.device = device.info().name;
   }
 
@@ -274,7 +274,7 @@ class Compression {
 
   void forEachBand(OpenMap& map, const std::string& stage, const MakeTiles& make_tiles,
                    const std::function<void(const MapBand&)>& visit) {
-    forEachMapBand(*map.samples, report_.band_rows, buffers_, make_tiles,
+    forEachMapBand(*map.samples, report_.band_rows, *buffers_, make_tiles,
                    fmt::format("{}: {}", stage, map.source->name), progress_, visit);
   }
 
@@ -406,6 +406,7 @@ class Compression {
     problem.make_tiles = [this](const OpenMap& map, int begin, int end) {
       return weighed(raster::activeTiles(*map.raster, begin, end), map, begin);
     };
+    buffers_ = std::make_unique<BandBuffers>(context_);
     problem.window_rows =
         planWindowRows(group.maps, problem.space, options_.memory_bytes, residentBytes(), context_.info());
     Refinement refined = refine(context_, problem, refinement, progress_);
@@ -536,7 +537,7 @@ class Compression {
   device::DeviceContext& context_;
   Progress& progress_;
   io::StagedDirectory staged_;
-  BandBuffers buffers_;
+  std::unique_ptr<BandBuffers> buffers_;  ///< of passes; made anew where something else needs the memory between
   StageClock clock_;
   CompressReport report_;
   Face face_;

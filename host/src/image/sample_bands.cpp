@@ -100,6 +100,7 @@ void SampleBands::forEachBand(int band_rows, Progress& progress, const std::func
     current = 1 - current;
   }
   kept_ = scratch_ != nullptr;
+  for (std::vector<std::byte>& buffer : buffers_) std::vector<std::byte>().swap(buffer);
 }
 
 }  // namespace facezip::image

@@ -24,15 +24,10 @@ int blockCount(int expressions) {
 
 }  // namespace
 
-device::KernelVariant gramVariant(const device::DeviceContext& context, device::KernelVariant wanted) {
-  if (context.info().name.find("llvmpipe") != std::string::npos) return device::KernelVariant::kGpu;
-  return context.resolve(wanted);
-}
-
 GramAccumulator::GramAccumulator(device::DeviceContext& context, GramSlots slots, int expressions,
                                  device::KernelVariant variant, std::size_t largest_partial_bytes)
     : context_(context),
-      variant_(gramVariant(context, variant)),
+      variant_(context.resolve(variant)),
       largest_partial_bytes_(largest_partial_bytes),
       pair_slots_(slots),
       run_begin_(context, "runs of tiles", CL_MEM_READ_ONLY),

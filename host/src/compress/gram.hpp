@@ -15,11 +15,6 @@
 
 namespace facezip::compress {
 
-/// The variant that runs when `wanted` is asked for: kAuto goes by the device's type, and Mesa's llvmpipe, a CPU,
-/// always gets kGpu. It ends every work-item after 65,535 rounds of its loops, in all and without a word (gallivm's
-/// LP_MAX_TGSI_LOOP_ITERATIONS), and the register-blocked work-items need millions.
-device::KernelVariant gramVariant(const device::DeviceContext& context, device::KernelVariant wanted);
-
 /// Adds up the Gram matrices of a capture, map by map and band by band.
 ///
 /// Sums: texels of a tile in float32, tiles of a run (at most 64) in float32, runs by compensated sums on the device,
@@ -34,7 +29,7 @@ class GramAccumulator {
   /// slots        the matrices that are wanted. A pair of masks that a tile holds but `slots` does not list is taken
   ///              to share no texel and is left out.
   /// expressions  N, 1 or more
-  /// variant      register-blocked work-items (kCpu) or work-groups with local memory (kGpu); see gramVariant()
+  /// variant      register-blocked work-items (kCpu) or work-groups with local memory (kGpu)
   GramAccumulator(device::DeviceContext& context, GramSlots slots, int expressions,
                   device::KernelVariant variant = device::KernelVariant::kAuto,
                   std::size_t largest_partial_bytes = kLargestPartialBytes);

@@ -57,6 +57,7 @@ cl::Kernel DeviceContext::kernel(std::string_view file_name, std::string_view na
 }
 
 KernelVariant DeviceContext::resolve(KernelVariant variant) const {
+  if (info_.name.find("llvmpipe") != std::string::npos) return KernelVariant::kGpu;
   if (variant != KernelVariant::kAuto) return variant;
   return info_.type == DeviceInfo::Type::kGpu ? KernelVariant::kGpu : KernelVariant::kCpu;
 }

@@ -46,7 +46,10 @@ class DeviceContext {
   /// Programs are built once per (file, defines). Throws DeviceError with the build log.
   cl::Kernel kernel(std::string_view file_name, std::string_view name, const std::string& defines = "");
 
-  /// Resolves kAuto by the device's type.
+  /// The variant that runs when `variant` is asked for: kAuto goes by the device's type. Mesa's llvmpipe, a CPU, always
+  /// gets kGpu: it ends every work-item after 65,535 rounds of its loops, in all and without a word (gallivm's
+  /// LP_MAX_TGSI_LOOP_ITERATIONS), where register-blocked work-items need millions, and it compiles their unrolled
+  /// vectors for minutes.
   KernelVariant resolve(KernelVariant variant) const;
 
   /// Largest power-of-two work-group size that the device and `kernel` allow, at most `wanted`.

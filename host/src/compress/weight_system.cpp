@@ -38,45 +38,53 @@ WeightSystem::WeightSystem(device::DeviceContext& context, const WeightSpace& sp
 
 void WeightSystem::add(const GridBand& band, const cl::Buffer& tile_at, const cl::Buffer& textures,
                        const WeightWindow& window, double metric_weight) {
+  sumTiles(band, textures);
+  gather(band, tile_at, window, metric_weight);
+}
+
+void WeightSystem::sumTiles(const GridBand& band, const cl::Buffer& textures) {
   const std::size_t tiles = band.tiles.tileCount();
+  partial_.reserve(tiles * systemBytesOfTile(space_, band.weight_scale));
+  if (tiles == 0) return;
+  const char* name = gpu_ ? "weight_system_gpu" : "weight_system";
+  cl::Kernel kernel =
+      context_.kernel(fmt::format("{}.cl", name), name, gridDefines(band.shape, space_, band.weight_scale));
+  const cl::Buffer* buffers[] = {&band.tiles.positions(), &band.tiles.texelWeights(), &band.differences, &textures,
+                                 &partial_.buffer()};
+  cl_uint argument = 0;
+  for (const cl::Buffer* buffer : buffers) kernel.setArg(argument++, *buffer);
+  kernel.setArg(argument++, static_cast<cl_int>(band.first_row));
+  kernel.setArg(argument++, static_cast<cl_int>(space_.columns));
+  kernel.setArg(argument++, static_cast<cl_int>(space_.rows));
+  const std::size_t cells = cellsOf16(band.weight_scale);
+  if (gpu_) {
+    context_.run(kernel, cl::NDRange(space_.systemEntries(), cells * cells, tiles),
+                 cl::NDRange(context_.workGroupSize(kernel, kTileSide), 1, 1));
+  } else {
+    context_.run(kernel, cl::NDRange(1, tiles), cl::NDRange(1, 1));
+  }
+}
+
+void WeightSystem::gather(const GridBand& band, const cl::Buffer& tile_at, const WeightWindow& window,
+                          double metric_weight) {
   const std::size_t entries = space_.systemEntries();
   const WindowRows& rows = window.rows();
-  partial_.reserve(tiles * systemBytesOfTile(space_, band.weight_scale));
   system_.reserve(static_cast<std::size_t>(rows.count() * space_.columns) * entries * sizeof(float));
-  if (tiles > 0) {
-    const char* name = gpu_ ? "weight_system_gpu" : "weight_system";
-    cl::Kernel kernel =
-        context_.kernel(fmt::format("{}.cl", name), name, gridDefines(band.shape, space_, band.weight_scale));
-    const cl::Buffer* buffers[] = {&band.tiles.positions(), &band.tiles.texelWeights(), &band.differences, &textures,
-                                   &partial_.buffer()};
-    cl_uint argument = 0;
-    for (const cl::Buffer* buffer : buffers) kernel.setArg(argument++, *buffer);
-    kernel.setArg(argument++, static_cast<cl_int>(band.first_row));
-    kernel.setArg(argument++, static_cast<cl_int>(space_.columns));
-    kernel.setArg(argument++, static_cast<cl_int>(space_.rows));
-    const std::size_t cells = cellsOf16(band.weight_scale);
-    if (gpu_) {
-      context_.run(kernel, cl::NDRange(entries, cells * cells, tiles),
-                   cl::NDRange(context_.workGroupSize(kernel, kTileSide), 1, 1));
-    } else {
-      context_.run(kernel, cl::NDRange(1, tiles), cl::NDRange(1, 1));
-    }
-  }
-  cl::Kernel gather = context_.kernel("weight_system_gather.cl", "weight_system_gather",
+  cl::Kernel kernel = context_.kernel("weight_system_gather.cl", "weight_system_gather",
                                       fmt::format("-D ENTRIES={} -D WEIGHT_SCALE={}", entries, band.weight_scale));
-  gather.setArg(0, tile_at);
-  gather.setArg(1, partial_.buffer());
-  gather.setArg(2, system_.buffer());
-  gather.setArg(3, static_cast<cl_int>(tilesAlong(band.shape.width)));
-  gather.setArg(4, static_cast<cl_int>(tilesAlong(band.shape.rows)));
-  gather.setArg(5, static_cast<cl_int>(band.first_row));
-  gather.setArg(6, static_cast<cl_int>(rows.begin));
-  gather.setArg(7, static_cast<cl_int>(space_.columns));
-  gather.setArg(8, static_cast<cl_int>(space_.rows));
-  gather.setArg(9, static_cast<cl_float>(metric_weight));
-  gather.setArg(10, static_cast<cl_int>(empty_ ? 0 : 1));
+  kernel.setArg(0, tile_at);
+  kernel.setArg(1, partial_.buffer());
+  kernel.setArg(2, system_.buffer());
+  kernel.setArg(3, static_cast<cl_int>(tilesAlong(band.shape.width)));
+  kernel.setArg(4, static_cast<cl_int>(tilesAlong(band.shape.rows)));
+  kernel.setArg(5, static_cast<cl_int>(band.first_row));
+  kernel.setArg(6, static_cast<cl_int>(rows.begin));
+  kernel.setArg(7, static_cast<cl_int>(space_.columns));
+  kernel.setArg(8, static_cast<cl_int>(space_.rows));
+  kernel.setArg(9, static_cast<cl_float>(metric_weight));
+  kernel.setArg(10, static_cast<cl_int>(empty_ ? 0 : 1));
   context_.run(
-      gather,
+      kernel,
       cl::NDRange(entries / 16, static_cast<std::size_t>(space_.columns), static_cast<std::size_t>(rows.count())),
       cl::NullRange);
   empty_ = false;

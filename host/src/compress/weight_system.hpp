@@ -28,6 +28,10 @@ class WeightSystem {
   void add(const GridBand& band, const cl::Buffer& tile_at, const cl::Buffer& textures, const WeightWindow& window,
            double metric_weight);
 
+  /// The two steps of add(), for benchmarks: the sums of every tile, and what they add to the cells.
+  void sumTiles(const GridBand& band, const cl::Buffer& textures);
+  void gather(const GridBand& band, const cl::Buffer& tile_at, const WeightWindow& window, double metric_weight);
+
   /// Moves the free weights of the window towards the minimum, `sweeps` times over all of them. Does not wait.
   /// smoothness, trust  above 0
   void relax(const WeightWindow& window, int sweeps, float smoothness, float trust);

@@ -1,0 +1,169 @@
+// weight_fit_bench.cpp - both halves of a turn of the refinement: difference textures under given weights, and grid
+// weights under given difference textures. Three channels of 8 bits; a turn takes three sweeps of weight_relax.
+#include <benchmark/benchmark.h>
+
+#include <vector>
+
+#include "compress/counter_hash.hpp"
+#include "compress/difference.hpp"
+#include "compress/difference_fit.hpp"
+#include "compress/weight_system.hpp"
+#include "compress/weight_window.hpp"
+#include "roof.hpp"
+#include "synthetic_capture.hpp"
+
+namespace facezip::bench {
+namespace {
+
+constexpr int kWeightScale = 8;
+constexpr int kSweeps = 3;
+constexpr float kRidge = 1e-3f;
+
+/// Arguments: R, N, C. A window that holds the whole of a square map, every weight free and hashed from its place.
+struct FitBench {
+  explicit FitBench(const benchmark::State& state)
+      : shape{static_cast<int>(state.range(0)), static_cast<int>(state.range(0)), 3, static_cast<int>(state.range(1)),
+              image::SampleType::kUint8},
+        space{shape.width / kWeightScale, shape.rows / kWeightScale, static_cast<int>(state.range(2)),
+              shape.expressions},
+        tiles(context),
+        window(context, space),
+        fit(context, space),
+        system(context, space) {
+    const compress::TileMasks masks = makeBumpMasks(shape.width, 1);
+    tiles.upload(masks);
+    tile_at = context.upload(compress::tileLookup(masks, shape), "lookup of tiles");
+    const cl::Buffer samples = context.upload(makeSamples(shape), "samples");
+    differences = context.allocate(static_cast<std::size_t>(differenceBytes()), CL_MEM_READ_WRITE, "differences");
+    compress::computeDifferences(context, tiles, shape, samples, differences);
+    const std::vector<float> weights = hashedWeights();
+    window.set({0, space.rows, 0, space.rows}, weights, weights);
+    fit.compute(band(), window, kRidge);
+    context.finish();
+  }
+
+  /// 0 to 1; lanes past N are 0.
+  std::vector<float> hashedWeights() const {
+    std::vector<float> weights(static_cast<std::size_t>(space.rows) * space.rowFloats(), 0.0f);
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      if (i % space.lanes() >= static_cast<std::size_t>(space.expressions)) continue;
+      weights[i] = static_cast<float>(compress::counterHash(1, i, 0, 0) >> 40) * 0x1.0p-24f;
+    }
+    return weights;
+  }
+
+  compress::GridBand band() const { return {tiles, shape, differences, 0, kWeightScale}; }
+
+  double texels() const { return static_cast<double>(tiles.tileCount()) * compress::kTileTexels; }
+  double cells() const { return static_cast<double>(space.columns) * space.rows; }
+  double pairs() const { return space.textures * (space.textures + 1) / 2.0; }
+  double differenceBytes() const {
+    return static_cast<double>(compress::differenceBufferBytes(shape, tiles.tileCount()));
+  }
+  double textureBytes() const { return texels() * space.textures * shape.channels * sizeof(float); }
+  double texelWeightBytes() const { return texels() * sizeof(float); }
+  double weightBytes() const { return cells() * static_cast<double>(space.cellFloats() * sizeof(float)); }
+  double systemBytes() const { return cells() * static_cast<double>(space.systemEntries() * sizeof(float)); }
+  double partialBytes() const {
+    return static_cast<double>(tiles.tileCount() * compress::systemBytesOfTile(space, kWeightScale));
+  }
+
+  device::DeviceContext& context = benchDevice();
+  compress::BandShape shape;
+  compress::WeightSpace space;
+  compress::DeviceTiles tiles;
+  compress::WeightWindow window;
+  compress::DifferenceFit fit;
+  compress::WeightSystem system;
+  cl::Buffer tile_at;
+  cl::Buffer differences;
+};
+
+/// Must move: differences, texel weights and the mask that marks what is wanted, grid weights in; textures out.
+/// Operations: a weight between two rows of cells, the sums of the C x C system, its right-hand sides and the energy,
+/// for each expression; the solution, about a tenth more at N = 20, is left out.
+void setFitCounters(benchmark::State& state, const FitBench& bench) {
+  setBandwidthCounters(
+      state, bench.differenceBytes() + 2.0 * bench.texelWeightBytes() + bench.weightBytes() + bench.textureBytes());
+  const double textures = bench.space.textures;
+  const double channels = bench.shape.channels;
+  setFlopCounters(state, 2.0 * bench.texels() * bench.space.expressions *
+                             (textures + bench.pairs() + textures * channels + channels));
+}
+
+void differenceFit(benchmark::State& state) {
+  FitBench bench(state);
+  measure(state, [&] {
+    bench.fit.compute(bench.band(), bench.window, kRidge);
+    bench.context.finish();
+  });
+  setFitCounters(state, bench);
+}
+
+void differenceFitRounded(benchmark::State& state) {
+  FitBench bench(state);
+  const std::vector<compress::TextureEncoding> encoding(
+      static_cast<std::size_t>(bench.space.textures * bench.shape.channels), {1.0f, -128.0f});
+  measure(state, [&] {
+    bench.fit.computeRounded(bench.band(), bench.window, kRidge, encoding, /* bits= */ 8);
+    bench.context.finish();
+  });
+  setFitCounters(state, bench);
+}
+
+/// Must move: differences, texel weights and textures in, the sums of the tiles out. Operations: for each pair of
+/// textures a product over channels and its share in three pairs of rows; for each expression the weighted difference,
+/// a product with each texture and its share in two rows.
+void weightSystem(benchmark::State& state) {
+  FitBench bench(state);
+  measure(state, [&] {
+    bench.system.sumTiles(bench.band(), bench.fit.textures());
+    bench.context.finish();
+  });
+  setBandwidthCounters(
+      state, bench.differenceBytes() + bench.texelWeightBytes() + bench.textureBytes() + bench.partialBytes());
+  const double channels = bench.shape.channels;
+  const double blocks = bench.pairs() * (2.0 * channels + 6.0);
+  const double sides = bench.space.expressions * (channels + bench.space.textures * (2.0 * channels + 4.0));
+  setFlopCounters(state, bench.texels() * (blocks + sides));
+}
+
+/// Must move: the sums of the tiles once in, the equations once out.
+void weightSystemGather(benchmark::State& state) {
+  FitBench bench(state);
+  bench.system.sumTiles(bench.band(), bench.fit.textures());
+  measure(state, [&] {
+    bench.system.clear();
+    bench.system.gather(bench.band(), bench.tile_at, bench.window, 1.0);
+    bench.context.finish();
+  });
+  setBandwidthCounters(state, bench.partialBytes() + bench.systemBytes());
+}
+
+/// Must move, each sweep: the equations, where weights started and the weights in, the weights out. Operations: for
+/// each expression of a cell a product with the blocks to eight neighbours and two triangles; smoothness and the factor
+/// are left out.
+void weightRelax(benchmark::State& state) {
+  FitBench bench(state);
+  bench.system.add(bench.band(), bench.tile_at, bench.fit.textures(), bench.window, 1.0);
+  measure(state, [&] {
+    bench.system.relax(bench.window, kSweeps, /* smoothness= */ 1.0f, /* trust= */ 1.0f);
+    bench.context.finish();
+  });
+  setBandwidthCounters(state, kSweeps * (bench.systemBytes() + 3.0 * bench.weightBytes()));
+  const double block = bench.space.textures * bench.space.textures;
+  setFlopCounters(state, kSweeps * 2.0 * bench.cells() * bench.space.expressions * 9.0 * block);
+}
+
+void arguments(benchmark::internal::Benchmark* row) {
+  row->ArgNames({"R", "N", "C"})->UseManualTime()->Unit(benchmark::kMillisecond);
+  row->Args({1024, 20, 4})->Args({1024, 52, 4});
+}
+BENCHMARK(differenceFit)->Name("difference_fit")->Apply(arguments);
+BENCHMARK(differenceFitRounded)->Name("difference_fit_rounded")->Apply(arguments);
+BENCHMARK(weightSystem)->Name("weight_system")->Apply(arguments);
+BENCHMARK(weightSystemGather)->Name("weight_system_gather")->Apply(arguments);
+BENCHMARK(weightRelax)->Name("weight_relax")->Apply(arguments);
+
+}  // namespace
+}  // namespace facezip::bench

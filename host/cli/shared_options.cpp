@@ -110,7 +110,7 @@ CompressOptions parseCompressOptions(const CompressArguments& arguments) {
   } catch (const InputError& error) {
     throw error.in("--mask-radius " + arguments.mask_radius);
   }
-  if (arguments.target_rmse > 0.0) options.target_rmse = arguments.target_rmse;
+  options.target_rmse = arguments.target_rmse;
   if (!arguments.budget.empty()) options.budget_bytes = parseBytes("--budget", arguments.budget);
   if (arguments.masks > 0) options.masks = arguments.masks;
   if (arguments.gutter >= 0) options.gutter = arguments.gutter;

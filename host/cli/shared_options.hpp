@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,7 @@ struct CompressArguments {
   std::string permutation_solver = "best";
   std::string mask_radius = "3cm";
   int masks = 0;
-  double target_rmse = 0.0;  ///< 0: none
+  std::optional<double> target_rmse;
   std::string budget;
   std::string unit;
   std::string memory = "2GiB";

@@ -130,18 +130,15 @@ void printPermutation(const CompressReport& report) {
   fmt::print("\n");
 }
 
-}  // namespace
-
-namespace {
-
 /// What a target or budget was chosen from, and what was taken.
 void printRateCurve(const CompressReport& report) {
   if (report.rate_curve.empty()) return;
   fmt::print("{:<14}{:>12}{:>12}{:>16}\n", "differences", "weights at", "memory", "expected RMSE");
   for (const RatePoint& point : report.rate_curve) {
-    const bool chosen = point.differences == report.differences && point.weight_scale == report.weight_scale;
-    fmt::print("{:<14}{:>12}{:>12}{:>16.3f}{}\n", point.differences, fmt::format("1/{}", point.weight_scale),
-               formatMegabytes(point.bytes), point.rmse, chosen ? "  <- taken" : "");
+    fmt::print("{:<14}{:>12}{:>12}{:>16.3f}{}\n",
+               fmt::format("{}{}", point.differences, point.code_bits == 16 ? ", 16-bit" : ""),
+               fmt::format("1/{}", point.weight_scale), formatMegabytes(point.bytes), point.rmse,
+               point == report.rate ? "  <- taken" : "");
   }
   fmt::print("\n");
 }

@@ -53,6 +53,19 @@ TEST(Capture, DescriptionDecidesOrderFilesAndWeights) {
   EXPECT_EQ(capture.maps[0].expressions[1].filename(), "e00.png");
 }
 
+TEST(Capture, ImportanceIsFoundOrNamed) {
+  const test::TemporaryDirectory folder;
+  test::writeSmallCapture(folder / "c", {.expressions = 2, .width = 8, .height = 8});
+  EXPECT_FALSE(openCapture(folder / "c").importance.has_value());
+  fs::copy_file(folder / "c/albedo/e00.png", folder / "c/importance.png");
+  EXPECT_EQ(openCapture(folder / "c").importance, folder / "c/importance.png");
+  EXPECT_EQ(openCapture(folder / "c").maps.size(), 1u) << "the painted image is no map";
+  io::writeTextFile(folder / "c/capture.json", R"({"importance": "albedo/e01.png"})");
+  EXPECT_EQ(openCapture(folder / "c").importance, folder / "c/albedo/e01.png");
+  io::writeTextFile(folder / "c/capture.json", R"({"importance": 1})");
+  EXPECT_THAT(failure(folder / "c"), HasSubstr("importance: expected a string"));
+}
+
 TEST(Capture, MapsCanBeChosen) {
   const test::TemporaryDirectory folder;
   test::writeSmallCapture(folder / "c", {.expressions = 2, .width = 8, .height = 8, .maps = {"albedo", "normal"}});

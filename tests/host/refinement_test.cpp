@@ -2,8 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
-#include <random>
 #include <string>
 
 #include "compress/code_bits.hpp"
@@ -12,65 +10,21 @@
 #include "facezip/evaluate.hpp"
 #include "facezip/package.hpp"
 #include "facezip/reconstruct.hpp"
-#include "small_capture.hpp"
+#include "kind_capture.hpp"
 #include "temporary_directory.hpp"
 
 namespace facezip {
 namespace {
 namespace fs = std::filesystem;
 using Method = CompressOptions::Method;
+using test::Kind;
+using test::noise;
+using test::wrinkles;
+using test::writeCapture;
 
 const Device& testDevice() {
   static const Device device = openDevice("cpu");
   return device;
-}
-
-/// A capture of one map from a function of texel, channel and expression, in units of 1/255.
-struct Kind {
-  std::string name;
-  int expressions = 6;
-  int width = 80;
-  int height = 80;
-  image::SampleType type = image::SampleType::kUint8;
-  std::function<double(int x, int y, int c, int n)> difference;
-};
-
-void PrintTo(const Kind& kind, std::ostream* out) { *out << kind.name; }
-
-double noise(int x, int y, int c, int n) {
-  std::uint32_t h =
-      static_cast<std::uint32_t>(x * 73856093 ^ y * 19349663 ^ c * 83492791 ^ (n + 1) * 2654435) * 2654435761u;
-  h ^= h >> 15;
-  h *= 2246822519u;
-  h ^= h >> 13;
-  return static_cast<double>(h % 2001) / 1000.0 - 1.0;
-}
-
-double spot(double x, double y, double centre_x, double centre_y, double radius) {
-  return std::exp(-((x - centre_x) * (x - centre_x) + (y - centre_y) * (y - centre_y)) / (radius * radius));
-}
-
-double wrinkles(int x, int y, int c, int n) {
-  const double stripes = std::sin(0.4 * x * std::cos(0.7 * n) + 0.4 * y * std::sin(0.7 * n));
-  return (40.0 - 8.0 * c) * stripes * spot(x, y, 16.0 + 11.0 * (n % 6), 20.0 + 17.0 * (n % 4), 22.0) +
-         2.0 * noise(x, y, c, n);
-}
-
-void writeCapture(const fs::path& folder, const Kind& kind) {
-  fs::create_directories(folder / "albedo");
-  geometry::writeObj(folder / "neutral.obj", test::gridMesh(21));
-  const image::ImageShape shape{kind.width, kind.height, 3, kind.type};
-  const std::string extension = kind.type == image::SampleType::kFloat32 ? ".exr" : ".png";
-  const auto neutral = [](int x, int y, int c) { return 120.0 + 10.0 * std::sin(0.3 * x + 0.2 * y + c); };
-  image::writeImage(folder / "albedo" / ("neutral" + extension), test::makeImage(shape, neutral));
-  for (int n = 0; n < kind.expressions; ++n) {
-    const auto expression = [&](int x, int y, int c) {
-      const double value = neutral(x, y, c) + kind.difference(x, y, c, n);
-      return kind.type == image::SampleType::kFloat32 ? value : std::clamp(value, 0.0, 255.0);
-    };
-    image::writeImage(folder / "albedo" / (test::smallExpressionName(n) + extension),
-                      test::makeImage(shape, expression));
-  }
 }
 
 CompressOptions optionsOf(Method method, int differences = 4) {

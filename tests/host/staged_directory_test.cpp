@@ -36,6 +36,19 @@ TEST(StagedDirectory, WithoutCommitNothingChanges) {
   EXPECT_EQ(entries(folder.path()), 0u);
 }
 
+TEST(StagedDirectory, ClearedFilesAreNotCommitted) {
+  const test::TemporaryDirectory folder;
+  io::StagedDirectory staged(folder / "a", Existing::kReplaceMarked, "m.json");
+  io::createDirectories(staged.path() / "map");
+  io::writeTextFile(staged.path() / "map/stale", "old");
+  io::writeTextFile(staged.path() / "stale", "old");
+  staged.clear();
+  io::writeTextFile(staged.path() / "m.json", "new");
+  staged.commit();
+  EXPECT_EQ(entries(folder / "a"), 1u);
+  EXPECT_TRUE(fs::exists(folder / "a/m.json"));
+}
+
 TEST(StagedDirectory, ReplacesItsOwnKindWhole) {
   const test::TemporaryDirectory folder;
   fs::create_directory(folder / "a");

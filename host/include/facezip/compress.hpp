@@ -64,8 +64,11 @@ struct CompressOptions {
 struct RatePoint {
   int differences = 0;      ///< C
   int weight_scale = 0;     ///< texels of the largest map per weight cell, per axis
+  int code_bits = 8;        ///< of the difference textures of maps of 16 bits or floats, 8 or 16; others have 8
   std::uint64_t bytes = 0;  ///< run-time memory, as Package::bytesInMemory() counts it
   double rmse = 0.0;        ///< estimate, in 1/255, pooled over the maps by their metric weights
+
+  bool operator==(const RatePoint&) const = default;
 };
 
 /// What a compression did, for --report and for tests.
@@ -74,9 +77,10 @@ struct CompressReport {
   int weight_scale = 0;  ///< texels of the largest map per weight cell, per axis
   /// What a target or budget was chosen from: rising bytes, falling RMSE. Empty where neither was asked for.
   std::vector<RatePoint> rate_curve;
-  int masks = 0;             ///< K
-  double mask_radius = 0.0;  ///< in the mesh's unit
-  std::string unit;          ///< of the mesh
+  std::optional<RatePoint> rate;  ///< that of them which was taken
+  int masks = 0;                  ///< K
+  double mask_radius = 0.0;       ///< in the mesh's unit
+  std::string unit;               ///< of the mesh
   bool unit_guessed = false;
   std::uint64_t covered_texels = 0;  ///< of the first map
   double cut_mass_mean = 0.0;        ///< share of a vertex's mask weight that the cutoff moved, mean

@@ -33,7 +33,7 @@ class BlockRankEnergy {
  public:
   /// sides        of the blocks in texels, rising, each a multiple of the one before; the grid begins at texel (0, 0)
   /// width, height, channels, expressions   of the map
-  /// stride       looks at every stride-th block of the largest size (and all that it holds); 1: at all
+  /// stride       looks at one in so many blocks of the largest size (and all that it holds), odd; 1: at all
   BlockRankEnergy(std::vector<int> sides, int width, int height, int channels, int expressions, int stride = 1);
 
   /// Adds rows [begin_row, begin_row + shape.rows): bands come in rising order and leave no row out.

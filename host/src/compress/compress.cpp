@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <map>
 #include <memory>
 
 #include "compress/band_plan.hpp"
@@ -51,7 +52,7 @@ struct WeightGroup {
   EncodedWeights weights;                         ///< that are written
   std::vector<std::vector<TextureRange>> ranges;  ///< of every map's difference textures
   std::vector<double> errors;                     ///< of every map: squared error before rounding, (1/255)^2
-  double start_error = 0.0;                       ///< of all maps, with the paper's weights, times their metric weights
+  double start_error = 0.0;                       ///< of all maps, with the paper's weights, times their fit weights
 };
 
 void requireSaneOptions(const CompressOptions& options) {
@@ -63,10 +64,10 @@ void requireSaneOptions(const CompressOptions& options) {
   require(options.differences >= 1 && options.differences <= 8, "--differences", "1 to 8",
           fmt::format("{}", options.differences));
   const bool chooses = options.target_rmse || options.budget_bytes;
-  require(!options.target_rmse || *options.target_rmse > 0.0, "--target-rmse", "above 0",
-          fmt::format("{}", options.target_rmse.value_or(0.0)));
+  require(!options.target_rmse || (*options.target_rmse > 0.0 && std::isfinite(*options.target_rmse)), "--target-rmse",
+          "above 0 and finite", fmt::format("{}", options.target_rmse.value_or(0.0)));
   require(!chooses || options.method == Method::kRefined, "--method", "refined, with a target or budget",
-          "another method");
+          methodName(options.method));
   require(options.restarts >= 1, "--restarts", "at least 1", fmt::format("{}", options.restarts));
   require(options.cluster_restarts >= 1, "--cluster-restarts", "at least 1",
           fmt::format("{}", options.cluster_restarts));
@@ -146,23 +147,24 @@ class Compression {
   // Textures, and how large a band may be.
   void openTextures() {
     maps_ = openMaps(capture_, face_, options_.gutter);
+    groups_.resize(options_.weights_per_map ? maps_.maps.size() : 1);
+    for (std::size_t m = 0; m < maps_.maps.size(); ++m) {
+      groups_[options_.weights_per_map ? m : 0].maps.push_back(&maps_.maps[m]);
+    }
+    for (const WeightGroup& group : groups_) assignFitWeights(group.maps);
     if (choosesRate()) {
       openRates();
     } else {
       assignWeightScales(maps_, options_.weight_scale);
     }
-    planBands();
-    groups_.resize(options_.weights_per_map ? maps_.maps.size() : 1);
-    for (std::size_t m = 0; m < maps_.maps.size(); ++m) {
-      groups_[options_.weights_per_map ? m : 0].maps.push_back(&maps_.maps[m]);
-    }
+    report_.band_rows = plannedBandRows();
+    keepDecoded();
     clock_.book("weight grid");
   }
 
   // The weight grid: masks at its cells.
   void layGrid() {
     if (choosesRate()) chooseRate();
-    assignWeightScales(maps_, options_.weight_scale);
     progress_.stage("weight grid", 0);
     grid_ = raster::makeWeightGrid(*texel_masks_, *maps_.maps[maps_.reference].raster, options_.weight_scale);
     clock_.book("weight grid");
@@ -174,41 +176,71 @@ class Compression {
 
   void openRates() {
     rates_ = std::make_unique<RateEstimate>(maps_, expressions());
-    options_.differences = 8;  // what memory is planned for
-    options_.weight_scale = rates_->finestScale();
-    assignWeightScales(maps_, options_.weight_scale);
+    // Sizes are known before any texel is.
+    const RatePoint smallest = efficientPoints(rates_->curve(weightSets())).front();
+    if (options_.budget_bytes && smallest.bytes > *options_.budget_bytes) {
+      throw InputError({"--budget", "",
+                        fmt::format("at least {} bytes, for {} difference texture with weights at 1/{}", smallest.bytes,
+                                    smallest.differences, smallest.weight_scale),
+                        fmt::format("{}", *options_.budget_bytes), "raise it, or compress smaller textures"});
+    }
+    take(smallest);
   }
 
   // Takes the number of textures and the weight scale from the curve.
   void chooseRate() {
     if (report_.rate_curve.empty()) {
-      report_.rate_curve = efficientPoints(rates_->curve(static_cast<int>(groups_.size())));
+      report_.rate_curve = efficientPoints(rates_->curve(weightSets()));
+      keepWhatMemoryHolds(report_.rate_curve);
     }
-    const std::span<const RatePoint> curve = report_.rate_curve;
-    const std::optional<RatePoint> chosen =
-        compress::chooseRate(curve, options_.target_rmse, options_.budget_bytes, calibration_);
-    if (!chosen) refuseRate(curve);
-    chosen_ = *chosen;
-    options_.differences = chosen_.differences;
-    options_.weight_scale = chosen_.weight_scale;
+    std::optional<RatePoint> chosen =
+        compress::chooseRate(report_.rate_curve, options_.target_rmse, options_.budget_bytes, calibration_);
+    if (!chosen) chosen = lastResort();
+    take(*chosen);
+    report_.rate = chosen;
+    report_.band_rows = plannedBandRows();
   }
 
-  [[noreturn]] void refuseRate(std::span<const RatePoint> curve) const {
-    if (options_.budget_bytes && curve.front().bytes > *options_.budget_bytes) {
-      throw InputError({"--budget", "",
-                        fmt::format("at least {} bytes, for one difference texture", curve.front().bytes),
-                        fmt::format("{}", *options_.budget_bytes), "raise it, or compress smaller textures"});
+  void take(const RatePoint& point) {
+    options_.differences = point.differences;
+    options_.weight_scale = point.weight_scale;
+    assignWeightScales(maps_, point.weight_scale);
+  }
+
+  /// Drops the points whose weights do not fit --memory. Where nothing would be left to choose from all stay, and
+  /// planning says what is missing.
+  void keepWhatMemoryHolds(std::vector<RatePoint>& curve) {
+    std::vector<RatePoint> held;
+    for (const RatePoint& point : curve) {
+      take(point);
+      if (fitsMemory()) held.push_back(point);
     }
-    std::vector<RatePoint> within(curve.begin(), curve.end());
-    if (options_.budget_bytes) {
-      std::erase_if(within, [&](const RatePoint& point) { return point.bytes > *options_.budget_bytes; });
+    if (compress::chooseRate(held, std::nullopt, options_.budget_bytes, 1.0)) curve = std::move(held);
+  }
+
+  bool fitsMemory() const {
+    try {
+      plannedBandRows();
+      for (const WeightGroup& group : groups_) plannedWindowRows(group);
+      return true;
+    } catch (const InputError&) {
+      return false;
     }
-    const RatePoint& best = within.back();
-    throw InputError({"--target-rmse", "",
-                      fmt::format("at least {:.3f}, which {} differences with weights at 1/{} are expected to reach{}",
-                                  best.rmse * calibration_, best.differences, best.weight_scale,
-                                  options_.budget_bytes ? " within the budget" : ""),
-                      fmt::format("{}", *options_.target_rmse), ""});
+  }
+
+  /// The best point there is, where the estimate says that none reaches the target. It may be wrong: it is tried where
+  /// that was found of another, or it is not too far off. Throws InputError where there is no hope.
+  RatePoint lastResort() const {
+    constexpr double kMostPessimism = 2.0;  // estimates of small captures are up to 1.4 times what is reached
+    const RatePoint best = *compress::chooseRate(report_.rate_curve, std::nullopt, options_.budget_bytes, 1.0);
+    const bool tried = report_.rate == best;
+    if (!tried && best.rmse <= kMostPessimism * *options_.target_rmse) return best;
+    throw InputError(
+        {"--target-rmse", "",
+         fmt::format("at least {:.3f}, which {} differences with weights at 1/{} {}{}", tried ? reached_ : best.rmse,
+                     best.differences, best.weight_scale, tried ? "reach" : "are expected to reach",
+                     options_.budget_bytes ? " within the budget" : ""),
+         fmt::format("{}", *options_.target_rmse), "raise it, or the budget where there is one"});
   }
 
   /// True if the package that was written misses the target: the estimate then learns from it.
@@ -218,47 +250,61 @@ class Compression {
     double samples = 0.0;
     for (std::size_t m = 0; m < maps_.maps.size(); ++m) {
       const OpenMap& map = maps_.maps[m];
-      const double weight = map.source->metric_weight * coveredTexels(map) * map.samples->shape().channels;
+      const double weight = map.metric_weight * coveredTexels(map) * map.samples->shape().channels;
       error += weight * report_.rmse[m].second * report_.rmse[m].second;
       samples += weight;
     }
-    const double rmse = std::sqrt(error / samples);
-    if (rmse <= *options_.target_rmse) return false;
+    reached_ = std::sqrt(error / samples);
+    if (reached_ <= *options_.target_rmse) return false;
     progress_.note(fmt::format("{} differences with weights at 1/{} reach {:.3f}, not {:.3f}: trying more",
-                               options_.differences, options_.weight_scale, rmse, *options_.target_rmse));
-    calibration_ = std::max(rmse / chosen_.rmse, calibration_ * 1.001);
+                               options_.differences, options_.weight_scale, reached_, *options_.target_rmse));
+    constexpr double kNotAgain = 1.0 + 1e-9;  // rounding must not let the same point pass
+    calibration_ = std::max(reached_ / report_.rate->rmse * kNotAgain, calibration_);
     return true;
   }
 
+  /// Known before the grid is laid.
+  WeightSpace weightSpace() const {
+    const image::ImageShape& shape = maps_.maps[maps_.reference].samples->shape();
+    const auto cells = [this](int side) { return (side + options_.weight_scale - 1) / options_.weight_scale; };
+    return {cells(shape.width), cells(shape.height), options_.differences, expressions()};
+  }
+
+  int weightSets() const { return static_cast<int>(groups_.size()); }
+
   bool choosesRate() const { return options_.target_rmse || options_.budget_bytes; }
 
-  /// What stays from pass to pass: weights as codes and as halves, and the masks of the cells.
+  /// What stays from pass to pass: weights of every set as codes, at the start and as written, one as halves while it
+  /// is refined, and the masks of the cells.
   std::uint64_t residentBytes() const {
     constexpr std::uint64_t kMasksOfACell = 8;
-    const image::ImageShape& shape = maps_.maps[maps_.reference].samples->shape();
-    const auto scale = static_cast<std::uint64_t>(options_.weight_scale);
-    const std::uint64_t cells = (static_cast<std::uint64_t>(shape.width) + scale - 1) / scale *
-                                ((static_cast<std::uint64_t>(shape.height) + scale - 1) / scale);
-    return cells * (static_cast<std::uint64_t>(expressions() * options_.differences) * 4 +
+    const WeightSpace space = weightSpace();
+    const std::uint64_t cells = static_cast<std::uint64_t>(space.columns) * static_cast<std::uint64_t>(space.rows);
+    return cells * (static_cast<std::uint64_t>(expressions() * options_.differences * (2 * weightSets() + 2)) +
                     kMasksOfACell * (sizeof(int) + sizeof(float)) + sizeof(int));
   }
 
-  void planBands() {
+  /// Rows of a band that all maps can have. Throws InputError where --memory is too little.
+  int plannedBandRows() const {
     int rows = 0;
-    std::uint64_t decoded = 0;
     for (const OpenMap& map : maps_.maps) {
       const BandCost cost = bandCost(bandShape(*map.samples, 0), options_.differences, report_.masks);
       const int planned =
           planBandRows(cost, map.samples->shape().height, options_.memory_bytes, residentBytes(), context_.info());
       rows = rows == 0 ? planned : std::min(rows, planned);
-      decoded += map.samples->decodedBytes();
     }
-    report_.band_rows = rows;
-    keepDecoded(decoded);
+    return rows;
+  }
+
+  /// The same of the windows of the refinement, in rows of cells.
+  int plannedWindowRows(const WeightGroup& group) const {
+    return planWindowRows(group.maps, weightSpace(), options_.memory_bytes, residentBytes(), context_.info());
   }
 
   /// Later passes read decoded samples from a scratch file beside the package where the disk has room for it.
-  void keepDecoded(std::uint64_t decoded_bytes) {
+  void keepDecoded() {
+    std::uint64_t decoded_bytes = 0;
+    for (const OpenMap& map : maps_.maps) decoded_bytes += map.samples->decodedBytes();
     const fs::path directory = staged_.path();
     // Room for the package itself is kept free: it is never larger than the decoded textures.
     if (image::ScratchFile::freeBytes(directory) < 2 * decoded_bytes) {
@@ -319,7 +365,7 @@ class Compression {
           return weighed(texel_masks_->tiles(*map->raster, begin, end), *map, begin);
         };
         forEachBand(*map, "Gram matrices", make_tiles, [&](const MapBand& band) {
-          accumulator.add(band.tiles, band.differences, band.shape, map->source->metric_weight);
+          accumulator.add(band.tiles, band.differences, band.shape, map->fit_weight);
           if (rates_) rates_->addBand(static_cast<std::size_t>(map - maps_.maps.data()), band);
           covered +=
               static_cast<std::uint64_t>(std::count_if(band.masks.texel_weights.begin(), band.masks.texel_weights.end(),
@@ -329,9 +375,21 @@ class Compression {
       }
       group.grams = accumulator.finish();
     }
+    if (rates_) lookAgain();
     report_.covered_texels = covered_texels_.front();
     report_.overlapping_pairs = static_cast<int>(slots.pairs.size());
     clock_.book("Gram matrices");
+  }
+
+  // A change that the sample of a map's texels missed altogether leaves nothing to estimate by.
+  void lookAgain() {
+    for (std::size_t m = 0; m < maps_.maps.size(); ++m) {
+      if (!rates_->sawNothing(m)) continue;
+      rates_->startOver(m);
+      OpenMap& map = maps_.maps[m];
+      const auto make_tiles = [&](int begin, int end) { return texel_masks_->tiles(*map.raster, begin, end); };
+      forEachBand(map, "estimating", make_tiles, [&](const MapBand& band) { rates_->addBand(m, band); });
+    }
   }
 
   // Clusters of every mask and their place in the textures, and the weights that follow (Eq. 6). Touches no texel.
@@ -396,8 +454,6 @@ class Compression {
     clock_.book("range of the differences");
   }
 
-  WeightSpace weightSpace() const { return {grid_.width, grid_.height, options_.differences, expressions()}; }
-
   // Pass 2 of the other methods: weights and difference textures fitted in turn.
   void solveFitted(WeightGroup& group, int most_sweeps) {
     RefinementOptions refinement;
@@ -407,14 +463,13 @@ class Compression {
       return weighed(raster::activeTiles(*map.raster, begin, end), map, begin);
     };
     buffers_ = std::make_unique<BandBuffers>(context_);
-    problem.window_rows =
-        planWindowRows(group.maps, problem.space, options_.memory_bytes, residentBytes(), context_.info());
+    problem.window_rows = plannedWindowRows(group);
     Refinement refined = refine(context_, problem, refinement, progress_);
     group.ranges = std::move(refined.ranges);
     group.errors = std::move(refined.end_errors);
     group.start_error = 0.0;
     for (std::size_t m = 0; m < group.maps.size(); ++m) {
-      group.start_error += group.maps[m]->source->metric_weight * refined.start_errors[m];
+      group.start_error += group.maps[m]->fit_weight * refined.start_errors[m];
     }
     if (most_sweeps > 0) {
       report_.refinement_errors = std::move(refined.errors);
@@ -449,33 +504,43 @@ class Compression {
     }
   }
 
-  /// Writes refined weights, unless rounding made them worse than the paper's with textures that suit them: that can
-  /// only be where the paper's are exact or nearly so.
+  /// Writes refined weights, but where rounding made those of a group worse than the paper's with textures that suit
+  /// them it keeps the paper's: that can only be where they are exact or nearly so.
   void refineAndWrite() {
     // As many textures as expressions: the start is exact already.
     const int sweeps = expressions() <= options_.differences ? 0 : RefinementOptions{}.most_sweeps;
+    report_.refinement_errors.clear();
     for (WeightGroup& group : groups_) solveFitted(group, sweeps);
-    const double refined_error = write();
-    double start_error = 0.0;
-    for (const WeightGroup& group : groups_) start_error += group.start_error;
-    if (sweeps == 0 || refined_error <= start_error) return;
-    const std::vector<WeightGroup> refined = groups_;
-    for (WeightGroup& group : groups_) solveFitted(group, 0);
-    if (write() <= refined_error) {
-      progress_.note("the paper's weights are exact here: they are kept");
-      return;
+    const std::vector<double> refined_errors = write();
+    std::map<std::size_t, WeightGroup> refined;  // that may be worse than the start
+    for (std::size_t g = 0; sweeps > 0 && g < groups_.size(); ++g) {
+      if (refined_errors[g] > groups_[g].start_error) refined[g] = groups_[g];
     }
-    groups_ = refined;
-    write();
+    if (refined.empty()) return;
+    for (const auto& [g, group] : refined) solveFitted(groups_[g], 0);
+    const std::vector<double> start_errors = write();
+    std::erase_if(refined, [&](const auto& entry) { return start_errors[entry.first] <= refined_errors[entry.first]; });
+    for (auto& [g, group] : refined) groups_[g] = std::move(group);
+    if (refined.empty()) {
+      progress_.note("the paper's weights are exact here: they are kept");
+    } else {
+      write();
+    }
   }
 
-  /// Pass 3: writes what the groups hold. Returns the squared error, metric weights in it, of a fitted solution.
-  double write() {
+  /// Pass 3: writes what the groups hold. Returns the squared error of every group, fit weights in it, where difference
+  /// textures were fitted.
+  std::vector<double> write() {
     PackageSolution solution;
     solution.differences = options_.differences;
     solution.method_json = methodJson(options_, report_, face_.region_description);
     std::vector<std::unique_ptr<TextureSource>> sources;
-    std::vector<std::pair<FittedTextures*, OpenMap*>> fitted;
+    struct Fitted {
+      FittedTextures* source;
+      OpenMap* map;
+      std::size_t group;
+    };
+    std::vector<Fitted> fitted;
     const bool paper = options_.method == Method::kPaper || options_.method == Method::kNoPermutation;
     solution.maps.resize(maps_.maps.size());  // in the capture's order; their addresses stay
     for (std::size_t g = 0; g < groups_.size(); ++g) {
@@ -485,7 +550,7 @@ class Compression {
         OpenMap& map = *group.maps[m];
         MapSolution& out = solution.maps[static_cast<std::size_t>(&map - maps_.maps.data())];
         out = {&map, static_cast<int>(g), {}, 8, nullptr};
-        if (!paper) out.bits = codeBits(codeError(group, m), group.errors[m], map.samples->shape().type);
+        if (!paper) out.bits = bitsOf(group, m);
         for (const TextureRange& range : group.ranges[m]) out.encoding.push_back(encodingFor(range, out.bits));
         if (paper) {
           sources.push_back(std::make_unique<ClusterTextures>(context_, *texel_masks_, group.coefficients));
@@ -493,7 +558,7 @@ class Compression {
           auto source =
               std::make_unique<FittedTextures>(context_, weightSpace(), group.weights,
                                                ridgeOf(RefinementOptions{}, weightSpace()), out.encoding, out.bits);
-          fitted.emplace_back(source.get(), &map);
+          fitted.push_back({source.get(), &map, g});
           sources.push_back(std::move(source));
         }
         out.source = sources.back().get();
@@ -502,16 +567,24 @@ class Compression {
     const auto pass = [this](OpenMap& map, TextureSource& source, const std::function<void(const MapBand&)>& visit) {
       forEachBand(map, "writing", source, visit);
     };
+    staged_.clear();  // an attempt before may have had more textures
     compress::writePackage(context_, capture_, solution, pass, staged_.path());
     clock_.book("writing");
-    double error = 0.0;
+    std::vector<double> errors(groups_.size(), 0.0);
     report_.rmse.clear();
-    for (const auto& [source, map] : fitted) {
-      error += map->source->metric_weight * source->squaredError();
+    for (const auto& [source, map, group] : fitted) {
+      errors[group] += map->fit_weight * source->squaredError();
       const double samples = coveredTexels(*map) * map->samples->shape().channels * expressions();
       report_.rmse.emplace_back(map->source->name, std::sqrt(source->squaredError() / samples));
     }
-    return error;
+    return errors;
+  }
+
+  int bitsOf(const WeightGroup& group, std::size_t m) const {
+    const SampleType type = group.maps[m]->samples->shape().type;
+    // What was chosen was chosen for its size: its bits are kept to.
+    if (report_.rate) return type == SampleType::kUint8 ? 8 : report_.rate->code_bits;
+    return codeBits(codeError(group, m), group.errors[m], type);
   }
 
   /// Squared error that 8-bit codes of a map's difference textures would add.
@@ -547,8 +620,8 @@ class Compression {
   raster::WeightGrid grid_;
   std::optional<Importance> importance_;
   std::unique_ptr<RateEstimate> rates_;  ///< where a target or budget was given
-  RatePoint chosen_;
-  double calibration_ = 1.0;  ///< error that was measured over what the estimate had said
+  double calibration_ = 1.0;             ///< error that was measured over what the estimate had said; at least 1
+  double reached_ = 0.0;                 ///< RMSE of the last attempt, where there is a target
   std::vector<WeightGroup> groups_;
   std::vector<std::uint64_t> covered_texels_;  ///< of every map
 };

@@ -21,9 +21,12 @@ int scaleOf(int side, int reference_side, int weight_scale) {
 MapSet openMaps(const Capture& capture, const Face& face, std::optional<int> gutter) {
   MapSet set;
   std::map<std::pair<int, int>, std::shared_ptr<const raster::UvRaster>> rasters;
+  const bool any_counts = std::any_of(capture.maps.begin(), capture.maps.end(),
+                                      [](const CaptureMap& source) { return source.metric_weight > 0.0; });
   for (const CaptureMap& source : capture.maps) {
     OpenMap map;
     map.source = &source;
+    map.metric_weight = any_counts ? source.metric_weight : 1.0;
     map.samples = std::make_unique<image::SampleBands>(source, capture.expressions);
     const image::ImageShape& shape = map.samples->shape();
     auto& raster = rasters[{shape.width, shape.height}];
@@ -39,6 +42,12 @@ MapSet openMaps(const Capture& capture, const Face& face, std::optional<int> gut
     }
   }
   return set;
+}
+
+void assignFitWeights(std::span<OpenMap* const> maps) {
+  const bool any_counts =
+      std::any_of(maps.begin(), maps.end(), [](const OpenMap* map) { return map->metric_weight > 0.0; });
+  for (OpenMap* map : maps) map->fit_weight = any_counts ? map->metric_weight : 1.0;
 }
 
 void assignWeightScales(MapSet& set, int weight_scale) {

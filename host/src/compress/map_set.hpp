@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,8 @@ namespace facezip::compress {
 /// One map, opened.
 struct OpenMap {
   const CaptureMap* source = nullptr;
+  double metric_weight = 1.0;  ///< how much its errors count: the source's, but 1 where that of every map is 0
+  double fit_weight = 1.0;     ///< the same among the maps that share a set of weights with it
   std::unique_ptr<image::SampleBands> samples;
   std::shared_ptr<const raster::UvRaster> raster;  ///< shared by the maps of one size
   int weight_scale = 0;                            ///< texels of this map per weight cell, per axis
@@ -30,6 +33,9 @@ struct MapSet {
 /// gutter  texels; none: max(16, side / 64)
 /// Throws InputError: a texture that does not fit its neutral.
 MapSet openMaps(const Capture& capture, const Face& face, std::optional<int> gutter);
+
+/// Sets the fit weight of maps that share a set of weights: their metric weight, but 1 where that of each is 0.
+void assignFitWeights(std::span<OpenMap* const> maps);
 
 /// Sets the weight scale of every map.
 /// weight_scale  of the largest map; the others' follow, since all maps share one weight grid

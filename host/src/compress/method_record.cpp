@@ -19,13 +19,6 @@ constexpr std::pair<PermutationSolver, const char*> kSolvers[] = {
     {PermutationSolver::kDescent, "descent"},
     {PermutationSolver::kMessagePassing, "message-passing"}};
 
-const char* methodName(Method method) {
-  for (const auto& [value, name] : kMethods) {
-    if (value == method) return name;
-  }
-  return "";
-}
-
 const char* solverName(PermutationSolver solver) {
   for (const auto& [value, name] : kSolvers) {
     if (value == solver) return name;
@@ -52,6 +45,13 @@ std::string lengthText(const geometry::Length& length) {
 }
 
 }  // namespace
+
+const char* methodName(Method method) {
+  for (const auto& [value, name] : kMethods) {
+    if (value == method) return name;
+  }
+  return "";
+}
 
 std::string methodJson(const CompressOptions& options, const CompressReport& report, const std::string& region) {
   json record = {{"name", methodName(options.method)},

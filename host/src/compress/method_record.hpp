@@ -7,6 +7,9 @@
 
 namespace facezip::compress {
 
+/// Name of a method on the command line and in records: "refined", "closed-loop", "paper", "no-permutation".
+const char* methodName(CompressOptions::Method method);
+
 /// The options and results as the JSON text of package.json's "method". Holds nothing that differs from run to run.
 std::string methodJson(const CompressOptions& options, const CompressReport& report, const std::string& region);
 

@@ -13,7 +13,7 @@ namespace facezip::compress {
 /// What the estimate needs of a map.
 struct RateMap {
   std::uint64_t samples = 0;  ///< width x height x channels
-  int sample_bytes = 1;       ///< of the neutral
+  int sample_bytes = 1;       ///< of the neutral; above 1, difference textures may have codes of 16 bits
   double metric_weight = 1.0;
   double covered_samples = 0.0;  ///< covered texels x channels x expressions
   double mean_square = 0.0;      ///< of the differences, per covered sample, (1/255)^2
@@ -21,10 +21,11 @@ struct RateMap {
   std::vector<std::vector<double>> left;
 };
 
-/// The maps' size and estimated error for every number of textures 1 to 8 and every weight scale.
+/// The maps' size and estimated error for every number of textures 1 to 8 and every weight scale, and with codes of 16
+/// bits too where there are maps that may have them.
 ///   RMSE^2 = metric-weighted mean over maps of mean_square (left + rounding)
-/// Free weights come within a few per cent of what the best C components of each cell leave; codes of 8 bits add a
-/// share of the differences' own energy (kRounding).
+/// Free weights come near what the best C components of each cell leave, more often below than above it since they are
+/// interpolated; codes of 8 bits add a share of the differences' own energy (kRounding), those of 16 that / 257^2.
 /// scales        texels of the largest map per cell, as RateMap::left counts them
 /// cells         of the weight grid at each scale, times the number of weight sets
 /// expressions   N

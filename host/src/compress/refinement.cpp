@@ -30,7 +30,7 @@ class MapWindow {
         fit_(context, space),
         finder_(context, space.textures) {}
 
-  double metricWeight() const { return map_.source->metric_weight; }
+  double fitWeight() const { return map_.fit_weight; }
 
   /// Loads the texels that rows [free_begin, free_end) of cells reach.
   void moveTo(int free_begin, int free_end, const RefinementProblem& problem) {
@@ -70,7 +70,7 @@ class MapWindow {
   }
 
   void addTo(WeightSystem& system, const WeightWindow& weights) {
-    system.add(band(), tile_at_.buffer(), fit_.textures(), weights, metricWeight());
+    system.add(band(), tile_at_.buffer(), fit_.textures(), weights, fitWeight());
   }
 
   std::vector<TextureRange> range() { return finder_.find(tiles_, shape_, fit_.textures(), own_first_, own_end_); }
@@ -148,7 +148,7 @@ class Refiner {
     const float ridge = ridgeOf(options_, problem_.space);
     for (const auto& map : maps_) map->fit(window_, ridge);
     double error = 0.0;
-    for (const auto& map : maps_) error += map->metricWeight() * map->error().weighted;
+    for (const auto& map : maps_) error += map->fitWeight() * map->error().weighted;
     return error;
   }
 

@@ -63,6 +63,14 @@ StagedDirectory::~StagedDirectory() {
   fs::remove_all(staging_, ignored);
 }
 
+void StagedDirectory::clear() {
+  for (const fs::directory_entry& entry : fs::directory_iterator(staging_)) {
+    std::error_code error;
+    fs::remove_all(entry.path(), error);
+    if (error) throw OutputError(target_, error.message());
+  }
+}
+
 void StagedDirectory::commit() {
   if (existing_ == Existing::kMerge) {
     mergeIntoTarget();

@@ -26,6 +26,9 @@ class StagedDirectory {
   /// Where to write; sub-directories are the caller's to make.
   const std::filesystem::path& path() const { return staging_; }
 
+  /// Removes what was written so far. Throws OutputError.
+  void clear();
+
   /// Puts the directory in place. Throws OutputError.
   void commit();
 

@@ -127,6 +127,7 @@ std::string toJson(const CompressReport& report) {
   for (const RatePoint& point : report.rate_curve) {
     object["rate_curve"].push_back({{"differences", point.differences},
                                     {"weight_scale", point.weight_scale},
+                                    {"code_bits", point.code_bits},
                                     {"bytes", point.bytes},
                                     {"rmse", point.rmse}});
   }

@@ -22,6 +22,7 @@ class MapWindow {
   MapWindow(device::DeviceContext& context, OpenMap& map, const WeightSpace& space)
       : map_(map),
         context_(context),
+        textures_(space.textures),
         window_(*map.samples),
         tiles_(context),
         samples_(context, "samples of a band", CL_MEM_READ_ONLY),
@@ -73,13 +74,18 @@ class MapWindow {
     system.add(band(), tile_at_.buffer(), fit_.textures(), weights, fitWeight());
   }
 
-  std::vector<TextureRange> range() { return finder_.find(tiles_, shape_, fit_.textures(), own_first_, own_end_); }
+  /// Of the free rows' tiles, [tile][plane].
+  std::vector<TextureRange> ranges() {
+    return finder_.findPerTile(tiles_, shape_, fit_.textures(), own_first_, own_end_);
+  }
+  std::size_t planes() const { return static_cast<std::size_t>(textures_ * map_.samples->shape().channels); }
 
  private:
   GridBand band() const { return {tiles_, shape_, differences_.buffer(), window_.begin(), map_.weight_scale}; }
 
   OpenMap& map_;
   device::DeviceContext& context_;
+  int textures_;
   image::SampleWindow window_;
   BandShape shape_;
   DeviceTiles tiles_;
@@ -104,6 +110,7 @@ class Refiner {
     assert(problem.cell_energy > 0.0 && problem.window_rows > 0);
     for (OpenMap* map : problem.maps) maps_.push_back(std::make_unique<MapWindow>(context, *map, problem.space));
     result_.ranges.resize(maps_.size());
+    tile_ranges_.resize(maps_.size());
     result_.start_errors.resize(maps_.size(), 0.0);
     result_.end_errors.resize(maps_.size(), 0.0);
     result_.errors.assign(static_cast<std::size_t>(options.most_sweeps) + 1, 0.0);
@@ -118,6 +125,11 @@ class Refiner {
       sweep(progress);
       keep();
       progress.advance(static_cast<std::size_t>(end));
+    }
+    // The start is kept whole: it is what is left where clamping costs too much.
+    const double clipped = options_.most_sweeps > 0 ? options_.clipped_tiles : 0.0;
+    for (std::size_t m = 0; m < maps_.size(); ++m) {
+      result_.ranges[m] = clippedRange(tile_ranges_[m], maps_[m]->planes(), clipped);
     }
     return std::move(result_);
   }
@@ -185,7 +197,8 @@ class Refiner {
         std::span(weights).subspan(static_cast<std::size_t>(rows.free_begin - rows.begin) * row_floats,
                                    static_cast<std::size_t>(rows.free_end - rows.free_begin) * row_floats));
     for (std::size_t m = 0; m < maps_.size(); ++m) {
-      widen(result_.ranges[m], maps_[m]->range());
+      const std::vector<TextureRange> tiles = maps_[m]->ranges();
+      tile_ranges_[m].insert(tile_ranges_[m].end(), tiles.begin(), tiles.end());
       result_.end_errors[m] += maps_[m]->error().plain;
     }
   }
@@ -196,6 +209,7 @@ class Refiner {
   WeightWindow window_;
   WeightSystem system_;
   std::vector<std::unique_ptr<MapWindow>> maps_;
+  std::vector<std::vector<TextureRange>> tile_ranges_;  ///< of every map, [tile][plane]
   Refinement result_;
 };
 

@@ -27,6 +27,7 @@ struct RefinementOptions {
   double smoothness = 3e-4;  ///< of RefinementProblem::cell_energy
   double trust = 1e-4;       ///< likewise
   double ridge = 1e-4;       ///< per expression and 1 / C, the mean square of a weight
+  double clipped_tiles = 0.005;  ///< share of the tiles that may reach beyond the difference textures' codes at an end
 };
 
 /// What is refined. References must outlive the call.

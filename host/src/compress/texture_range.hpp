@@ -18,6 +18,12 @@ class TextureRangeFinder {
   TextureRangeFinder(device::DeviceContext& context, int textures)
       : context_(context), textures_count_(textures), ranges_(context, "ranges of the difference textures") {}
 
+  /// Range of each texture and channel in each of tiles [first, end), over the texels where a mask is above 0 (gutter
+  /// too): entry (tile - first) * C * shape.channels + texture * shape.channels + channel. Waits.
+  /// textures  [tile][C][channel][256] float
+  std::vector<TextureRange> findPerTile(const DeviceTiles& tiles, const BandShape& shape, const cl::Buffer& textures,
+                                        std::size_t first, std::size_t end);
+
   /// Range of each texture and channel over the texels of tiles [first, end) where a mask is above 0 (gutter too):
   /// entry texture * shape.channels + channel. Waits.
   /// textures  [tile][C][channel][256] float
@@ -29,6 +35,10 @@ class TextureRangeFinder {
   int textures_count_;
   device::PooledBuffer ranges_;
 };
+
+/// Ranges of `planes` textures and channels from those of their tiles, [tile][plane]: all but a share of `clipped` of
+/// the tiles lie within them at either end. A few far texels would coarsen the codes of all others.
+std::vector<TextureRange> clippedRange(std::span<const TextureRange> tiles, std::size_t planes, double clipped);
 
 /// Makes every range of `whole` hold the one of `part`. An empty `whole` becomes `part`.
 void widen(std::vector<TextureRange>& whole, std::span<const TextureRange> part);

@@ -234,6 +234,21 @@ TEST_F(Command, EvaluateAblates) {
   EXPECT_FALSE(report["maps"]["albedo"].contains("blends"));
 }
 
+TEST_F(Command, EvaluateComparesWithWeightsPerMap) {
+  const test::TemporaryDirectory out;
+  const test::CommandResult result =
+      runFacezip("evaluate " + quoted(capture()) + " " + quoted(package()) +
+                 " --baselines weights-per-map --blends 0 --report " + quoted(out / "e.json"));
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  EXPECT_THAT(result.out, HasSubstr("own weights"));
+  const json report = readJson(out / "e.json");
+  // Both maps of this capture change alike: a second set of weights costs 6 maps of 10 x 10 x 4 bytes.
+  EXPECT_EQ(report["bytes"]["weights_per_map"].get<int>(), report["bytes"]["package"].get<int>() + 6 * 10 * 10 * 4);
+  for (const char* map : {"albedo", "normal"}) {
+    EXPECT_GT(report["maps"][map]["rmse"]["weights_per_map"].get<double>(), 0.0);
+  }
+}
+
 TEST_F(Command, EvaluateDrawsThePicture) {
   const test::TemporaryDirectory out;
   const std::string command =

@@ -36,9 +36,10 @@ void addEvaluateCommand(CLI::App& app, const CommonOptions& common) {
   command
       ->add_option("--baselines", arguments->baselines,
                    "What to compare with: pca4, pca8, limit (best components of every block), no-permutation, paper, "
-                   "closed-loop, refined (each compresses once more), or none")
+                   "closed-loop, refined, weights-per-map (each compresses once more), or none")
       ->delimiter(',')
-      ->check(CLI::IsMember({"pca4", "pca8", "limit", "no-permutation", "paper", "closed-loop", "refined", "none"}))
+      ->check(CLI::IsMember(
+          {"pca4", "pca8", "limit", "no-permutation", "paper", "closed-loop", "refined", "weights-per-map", "none"}))
       ->capture_default_str();
   command->add_flag("--ablation", arguments->ablation,
                     "Also every method at C = 1, 2, 3, 4: compresses up to 16 times more");
@@ -70,6 +71,7 @@ void addEvaluateCommand(CLI::App& app, const CommonOptions& common) {
     options.paper = wanted("paper");
     options.closed_loop = wanted("closed-loop");
     options.refined = wanted("refined");
+    options.weights_per_map = wanted("weights-per-map");
     options.limit = wanted("limit");
     options.ablation = arguments->ablation;
     options.blends = arguments->blends;

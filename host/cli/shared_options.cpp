@@ -56,7 +56,7 @@ void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
   command
       .add_option("--target-rmse", arguments.target_rmse,
                   "Find the smallest package of at most this error (0..255), instead of the two above")
-      ->check(CLI::PositiveNumber)
+      ->type_name("RMSE")
       ->excludes(differences)
       ->excludes(scale);
   command.add_option("--budget", arguments.budget, "Find the best package within this run-time memory, such as 40MiB")

@@ -105,11 +105,9 @@ void printAblation(const std::string& title, const std::map<std::string, std::ma
 }
 
 void printBytes(const Evaluation& evaluation) {
-  static const std::vector<std::pair<std::string, std::string>> rows = {{"package", "package"},
-                                                                        {"pca4", "PCA(4)"},
-                                                                        {"pca8", "PCA(8)"},
-                                                                        {"raw", "all textures"},
-                                                                        {"package_disk", "package, files on disk"}};
+  static const std::vector<std::pair<std::string, std::string>> rows = {
+      {"package", "package"},  {"weights_per_map", "own weights"},        {"pca4", "PCA(4)"}, {"pca8", "PCA(8)"},
+      {"raw", "all textures"}, {"package_disk", "package, files on disk"}};
   fmt::print("\n{:<34}{:>14}\n", "run-time memory", "");
   for (const auto& [key, title] : rows) {
     const auto found = evaluation.bytes.find(key);

@@ -139,6 +139,35 @@ TEST_F(BadInput, RegionWithAWrongIndex) {
   expectFailure(cli::kExitInput, {"face_region.txt", "99999", "3"});
 }
 
+TEST_F(BadInput, ImportanceThatCannotBeUsed) {
+  const std::string option = std::string(kOptions) + " --importance ";
+  expectFailure(cli::kExitInput, {"absent.png", "no such file"}, option + quoted(folder_ / "absent.png"));
+  io::writeTextFile(folder_ / "text.png", "not a picture");
+  expectFailure(cli::kExitInput, {"text.png", "an image"}, option + quoted(folder_ / "text.png"));
+  const auto black = test::makeImage({8, 8, 1, image::SampleType::kUint8}, [](int, int, int) { return 0.0; });
+  image::writeImage(folder_ / "black.png", black);
+  expectFailure(cli::kExitInput, {"black.png", "not black everywhere", "white"},
+                option + quoted(folder_ / "black.png"));
+  // The same of the capture's own, unless it is put aside.
+  io::writeTextFile(capture() / "capture.json", R"({"importance": "gone.png"})");
+  expectFailure(cli::kExitInput, {"gone.png", "no such file"});
+  image::writeImage(capture() / "gone.png", black);
+  expectFailure(cli::kExitInput, {"gone.png", "not black everywhere"});
+  EXPECT_EQ(compress(option + "none").exit_code, cli::kExitSuccess);
+}
+
+TEST_F(BadInput, TargetOrBudgetThatCannotBeMet) {
+  const std::string options = kOptions;
+  // 48 x 48 texels of 3 bytes, neutral and one difference; 2 x 2 cells of 3 expressions.
+  expectFailure(cli::kExitInput, {"--budget", "at least 13836 bytes", "got 13000"}, options + " --budget 13kB");
+  expectFailure(cli::kExitInput, {"--budget", "a size such as", "lots"}, options + " --budget lots");
+  expectFailure(cli::kExitInput, {"--target-rmse", "at least 0.", "got 0.001"}, options + " --target-rmse 0.001");
+  for (const char* value : {"0", "-1", "nan", "inf"}) {
+    expectFailure(cli::kExitInput, {"--target-rmse", "above 0", value}, options + " --target-rmse " + value);
+  }
+  expectFailure(cli::kExitInput, {"--method", "refined", "got paper"}, options + " --budget 1MB --method paper");
+}
+
 TEST_F(BadInput, FewerSamplesThanAskedFor) { expectFailure(cli::kExitInput, {"1000", "441"}, "--unit m --masks 1000"); }
 
 TEST_F(BadInput, RadiusLargerThanTheFace) { expectFailure(cli::kExitInput, {"radius"}, "--unit m --mask-radius 2m"); }
@@ -214,6 +243,12 @@ TEST_F(BadInput, CommandLine) {
   EXPECT_EQ(runFacezip("compress").exit_code, cli::kExitUsage);
   EXPECT_EQ(compress("--masks 5 --mask-radius 3cm").exit_code, cli::kExitUsage);
   EXPECT_EQ(compress("--method magic").exit_code, cli::kExitUsage);
+  for (const char* chosen : {"--target-rmse 2", "--budget 1MB"}) {
+    for (const char* given : {" --differences 4", " --weight-scale 8"}) {
+      EXPECT_EQ(compress(std::string(chosen) + given).exit_code, cli::kExitUsage) << chosen << given;
+    }
+  }
+  EXPECT_EQ(compress("--target-rmse little").exit_code, cli::kExitUsage);
 }
 
 /// A package to break: every file damaged in every way is refused by every command that reads it.

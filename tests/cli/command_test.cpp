@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -58,6 +60,30 @@ TEST_F(Command, CompressIsQuietInAPipeAndReports) {
   EXPECT_GT(report["permutation"]["bound"].get<double>(), 0.0);
   EXPECT_LE(report["permutation"]["bound"].get<double>(), report["permutation"]["cost"].get<double>());
   EXPECT_LE(report["permutation"]["cost"].get<double>(), report["permutation"]["median_cost"].get<double>());
+}
+
+TEST_F(Command, CompressFindsATargetAndABudget) {
+  const test::TemporaryDirectory out;
+  const std::string command = "compress " + quoted(capture()) + " --output " + quoted(out / "p") +
+                              " --unit m --mask-radius 5cm --restarts 5 --report " + quoted(out / "r.json");
+  for (const char* option : {" --target-rmse 1.5", " --budget 130kB", " --target-rmse 1.5 --budget 0.2MB"}) {
+    const test::CommandResult result = runFacezip(command + option);
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("expected RMSE"));
+    EXPECT_EQ(result.out.find("<- taken"), result.out.rfind("<- taken")) << "once";
+    ASSERT_THAT(result.out, HasSubstr("<- taken"));
+    const json report = readJson(out / "r.json");
+    const auto taken = std::find_if(report["rate_curve"].begin(), report["rate_curve"].end(), [&](const json& point) {
+      return point["differences"] == report["differences"] && point["weight_scale"] == report["weight_scale"];
+    });
+    ASSERT_NE(taken, report["rate_curve"].end());
+    EXPECT_EQ((*taken)["code_bits"], 8);
+    const bool has_target = std::string(option).find("target") != std::string::npos;
+    const bool has_budget = std::string(option).find("budget") != std::string::npos;
+    EXPECT_TRUE(!has_target || (*taken)["rmse"].get<double>() <= 1.5);
+    EXPECT_TRUE(!has_target || report["rmse"]["albedo"].get<double>() <= 1.5 * std::sqrt(2.0)) << "of two maps";
+    EXPECT_TRUE(!has_budget || (*taken)["bytes"].get<double>() <= 2e5);
+  }
 }
 
 TEST_F(Command, PeakMemoryDoesNotGrowWithTheHeightOfTheImage) {
@@ -206,6 +232,21 @@ TEST_F(Command, EvaluateAblates) {
   }
   EXPECT_TRUE(report["maps"]["albedo"]["ablation"]["pca"].contains("8"));
   EXPECT_FALSE(report["maps"]["albedo"].contains("blends"));
+}
+
+TEST_F(Command, EvaluateComparesWithWeightsPerMap) {
+  const test::TemporaryDirectory out;
+  const test::CommandResult result =
+      runFacezip("evaluate " + quoted(capture()) + " " + quoted(package()) +
+                 " --baselines weights-per-map --blends 0 --report " + quoted(out / "e.json"));
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  EXPECT_THAT(result.out, HasSubstr("own weights"));
+  const json report = readJson(out / "e.json");
+  // Both maps of this capture change alike: a second set of weights costs 6 maps of 10 x 10 x 4 bytes.
+  EXPECT_EQ(report["bytes"]["weights_per_map"].get<int>(), report["bytes"]["package"].get<int>() + 6 * 10 * 10 * 4);
+  for (const char* map : {"albedo", "normal"}) {
+    EXPECT_GT(report["maps"][map]["rmse"]["weights_per_map"].get<double>(), 0.0);
+  }
 }
 
 TEST_F(Command, EvaluateDrawsThePicture) {

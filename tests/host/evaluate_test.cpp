@@ -10,7 +10,7 @@
 #include "facezip/compress.hpp"
 #include "facezip/report.hpp"
 #include "image/image_file.hpp"
-#include "small_capture.hpp"
+#include "kind_capture.hpp"
 #include "temporary_directory.hpp"
 
 namespace facezip {
@@ -82,6 +82,48 @@ TEST_F(Evaluating, OtherMethodsAreCompressedWithTheRecordedOptions) {
   const Evaluation direct = evaluate(Package::open(folder_ / "p"), quickOptions());
   EXPECT_EQ(evaluation.maps[0].rmse.at("no_permutation").pooled, direct.maps[0].rmse.at("package").pooled);
   EXPECT_EQ(evaluation.bytes.at("no_permutation"), direct.bytes.at("package"));
+}
+
+// The normals of this capture follow expressions that its albedo does not.
+TEST_F(Evaluating, WeightsPerMapShowWhatSharingThemCosts) {
+  test::writeCapture(folder_ / "c", {"albedo", 8, 64, 64, image::SampleType::kUint8, test::wrinkles}, "albedo");
+  test::writeCapture(folder_ / "c",
+                     {"normal", 8, 64, 64, image::SampleType::kUint8,
+                      [](int x, int y, int c, int n) { return test::wrinkles(y, 80 - x, c, (7 * n + 3) % 12); }},
+                     "normal");
+  const Capture capture = openCapture(folder_ / "c");
+  CompressOptions compression = smallOptions();
+  compression.method = CompressOptions::Method::kRefined;
+  compression.differences = 3;
+  compressCapture(capture, folder_ / "p", compression, testDevice(), progress_);
+  const Package shared = Package::open(folder_ / "p");
+  EvaluateOptions options = quickOptions();
+  EXPECT_FALSE(evaluate(shared, options).bytes.contains("weights_per_map")) << "only where it is asked for";
+  options.weights_per_map = true;
+  const Evaluation evaluation = evaluate(shared, options);
+  EXPECT_EQ(evaluation.bytes.at("weights_per_map"), evaluation.bytes.at("package") + 8u * 8 * 8 * 3);
+
+  compression.weights_per_map = true;
+  compressCapture(capture, folder_ / "own", compression, testDevice(), progress_);
+  const Evaluation direct = evaluate(Package::open(folder_ / "own"), options);
+  for (std::size_t m = 0; m < 2; ++m) {
+    const auto& rmse = evaluation.maps[m].rmse;
+    EXPECT_EQ(rmse.at("weights_per_map").per_expression, direct.maps[m].rmse.at("package").per_expression);
+    EXPECT_LT(rmse.at("weights_per_map").pooled, rmse.at("package").pooled);
+    EXPECT_EQ(direct.maps[m].rmse.at("weights_per_map").pooled, direct.maps[m].rmse.at("package").pooled);
+    EXPECT_TRUE(evaluation.maps[m].blends.contains("weights_per_map"));
+  }
+  EXPECT_EQ(direct.bytes.at("weights_per_map"), direct.bytes.at("package"));
+  for (const auto& [stage, seconds] : direct.seconds) EXPECT_EQ(stage.find("compressing"), std::string::npos);
+}
+
+TEST_F(Evaluating, OneMapHasWeightsOfItsOwn) {
+  const Package package = compress({.expressions = 5});
+  EvaluateOptions options = quickOptions();
+  options.weights_per_map = true;
+  const Evaluation evaluation = evaluate(package, options);
+  EXPECT_EQ(evaluation.maps[0].rmse.at("weights_per_map").pooled, evaluation.maps[0].rmse.at("package").pooled);
+  for (const auto& [stage, seconds] : evaluation.seconds) EXPECT_EQ(stage.find("compressing"), std::string::npos);
 }
 
 TEST_F(Evaluating, DetailAgreesWithTheDecodedTexels) {

@@ -25,7 +25,10 @@ struct EvaluateOptions {
   bool paper = true;           ///< the paper's method
   bool closed_loop = false;    ///< the paper's weights, difference textures fitted to them
   bool refined = false;        ///< weights and difference textures fitted in turn
-  bool limit = true;           ///< the best C components of every block of weight_scale x weight_scale texels
+  /// The package's own method with weights of their own for every map: what it costs to share them. One compression
+  /// more where the maps of the package do.
+  bool weights_per_map = false;
+  bool limit = true;  ///< the best C components of every block of weight_scale x weight_scale texels
   /// Also every method at C = 1, 2, 3, 4: up to 16 compressions more, one after the other.
   bool ablation = false;
   int blends = 16;  ///< R, random weight vectors to blend; 0: none
@@ -84,7 +87,8 @@ struct ErrorPictures {
 };
 
 /// Methods are named "package" (as decoded from disk), "no_permutation", "paper", "closed_loop", "refined" (packages of
-/// these methods; the package's own method is an entry too, equal to "package"), "pca4", "pca8" and "limit".
+/// these methods; the package's own method is an entry too, equal to "package"), "weights_per_map" (equal to "package"
+/// where its maps do not share weights), "pca4", "pca8" and "limit".
 struct Evaluation {
   struct Map {
     std::string name;

@@ -69,12 +69,12 @@ class Evaluator {
       : package_(package),
         options_(options),
         subject_(makeSubject(capture, package, options.memory_bytes, device, progress)),
-        own_method_(methodKey(subject_.recorded.method)),
+        own_names_({methodKey(subject_.recorded.method)}),
         picture_map_(options.picture_map.empty() ? 0 : package.mapIndex(options.picture_map)),
         buffers_(device.context()) {}
 
   Evaluation run() {
-    evaluation_.method = own_method_;
+    evaluation_.method = own_names_.front();
     evaluation_.differences = package_.differences();
     evaluation_.expressions = package_.expressions();
     evaluation_.blend_weights = randomWeightVectors(subject_.recorded.seed, options_.blends, subject_.expressions());
@@ -100,13 +100,28 @@ class Evaluator {
     if (options_.paper) addCandidate(Method::kPaper);
     if (options_.closed_loop) addCandidate(Method::kClosedLoop);
     if (options_.refined) addCandidate(Method::kRefined);
+    if (options_.weights_per_map) addWeightsPerMap();
   }
 
   void addCandidate(Method method) {
     if (method == subject_.recorded.method) return;  // the package itself
     CompressOptions options = subject_.recorded;
     options.method = method;
-    const std::string key = methodKey(method);
+    addCandidate(methodKey(method), options);
+  }
+
+  void addWeightsPerMap() {
+    const std::string key = "weights_per_map";
+    if (package_.maps().size() == package_.weightSets().size()) {
+      own_names_.push_back(key);
+      return;
+    }
+    CompressOptions options = subject_.recorded;
+    options.weights_per_map = true;
+    addCandidate(key, options);
+  }
+
+  void addCandidate(const std::string& key, const CompressOptions& options) {
     auto temporary =
         std::make_unique<TemporaryPackage>(subject_.capture, options, key, subject_.device, subject_.progress);
     auto decoder = std::make_unique<PackageDecoder>(temporary->package(), subject_.device);
@@ -176,7 +191,8 @@ class Evaluator {
     if (options_.limit) result.rmse["limit"] = {limitError(pass, package_.differences()), {}};
     for (std::size_t c = 0; c < candidates_.size(); ++c) {
       addDecoded(candidates_[c].method, pass.errors[c], result);
-      if (candidates_[c].method == "package") addDecoded(own_method_, pass.errors[c], result);
+      if (candidates_[c].method != "package") continue;
+      for (const std::string& name : own_names_) addDecoded(name, pass.errors[c], result);
     }
     if (options_.ablation) addUndecodedAblation(pass, gram, result);
     evaluation_.maps.push_back(std::move(result));
@@ -253,7 +269,7 @@ class Evaluator {
     for (const Candidate& candidate : candidates_) {
       evaluation_.bytes[candidate.method] = candidate.decoder->package().bytesInMemory();
     }
-    evaluation_.bytes[own_method_] = package_.bytesInMemory();
+    for (const std::string& name : own_names_) evaluation_.bytes[name] = package_.bytesInMemory();
     evaluation_.bytes["package_disk"] = package_.bytesOnDisk();
     if (!options_.ablation) return;
     for (const int components : {1, 2, 3, 4, 8}) {
@@ -264,7 +280,7 @@ class Evaluator {
   const Package& package_;
   const EvaluateOptions& options_;
   const Subject subject_;
-  const std::string own_method_;
+  std::vector<std::string> own_names_;  ///< under which the package is known too: its method's first
   const int picture_map_;
   BandBuffers buffers_;
   StageClock clock_;

@@ -308,7 +308,7 @@ TEST_F(Command, DemoMakesEverything) {
 TEST_F(Command, InterruptLeavesNothing) {
   const test::TemporaryDirectory out;
   const test::CommandResult result =
-      runFacezip("synth --resolution 2048 --output " + quoted(out / "capture"), "timeout --signal=INT 1");
+      runFacezip("synth --resolution 4096 --output " + quoted(out / "capture"), "timeout --signal=INT 3");
   EXPECT_EQ(test::filesBelow(out.path()).size(), 0u);
   EXPECT_THAT(result.error, HasSubstr("cancelled"));
 }

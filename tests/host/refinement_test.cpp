@@ -182,7 +182,8 @@ TEST(Refinement, StaysTameWhereNothingChanges) {
   writeCapture(folder / "c", {"left half", 10, 96, 96, image::SampleType::kUint8,
                               [](int x, int y, int c, int n) { return x < 48 ? wrinkles(x, y, c, n) : 0.0; }});
   rmse(folder.path(), optionsOf(Method::kRefined));
-  const PackageWeights& weights = Package::open(folder / "p").weightSets()[0];
+  const Package package = Package::open(folder / "p");
+  const PackageWeights& weights = package.weightSets()[0];
   for (std::size_t i = 0; i < weights.scale.size(); ++i) {
     EXPECT_GT(weights.offset[i], -8.0);
     EXPECT_LT(weights.offset[i] + 255.0 * weights.scale[i], 8.0);

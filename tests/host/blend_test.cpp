@@ -15,18 +15,14 @@
 #include "reference/weight_blend.hpp"
 #include "sample_package.hpp"
 #include "temporary_directory.hpp"
+#include "test_device.hpp"
 
 namespace facezip {
 namespace {
 using test::SampleMap;
 using test::SamplePackage;
+using test::testDevice;
 using testing::HasSubstr;
-
-const Device& testDevice() {
-  // Never destroyed: the drivers' own libraries may be gone when static objects are.
-  static const Device* device = new Device(openDevice());
-  return *device;
-}
 
 double sampleAt(const std::vector<std::byte>& image, SampleType type, std::size_t sample) {
   if (type == SampleType::kUint8) return static_cast<double>(image[sample]);

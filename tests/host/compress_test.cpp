@@ -12,15 +12,12 @@
 #include "io/staged_directory.hpp"
 #include "small_capture.hpp"
 #include "temporary_directory.hpp"
+#include "test_device.hpp"
 
 namespace facezip {
 namespace {
+using test::testDevice;
 namespace fs = std::filesystem;
-
-const Device& testDevice() {
-  static const Device device = openDevice("cpu");
-  return device;
-}
 
 /// Options for captures of 80 texels on a patch of 20 cm.
 CompressOptions smallOptions() {

@@ -12,15 +12,12 @@
 #include "image/image_file.hpp"
 #include "kind_capture.hpp"
 #include "temporary_directory.hpp"
+#include "test_device.hpp"
 
 namespace facezip {
 namespace {
+using test::testDevice;
 namespace fs = std::filesystem;
-
-const Device& testDevice() {
-  static const Device device = openDevice("cpu");
-  return device;
-}
 
 CompressOptions smallOptions() {
   CompressOptions options;

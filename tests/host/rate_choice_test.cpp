@@ -12,9 +12,11 @@
 #include "io/staged_directory.hpp"
 #include "kind_capture.hpp"
 #include "temporary_directory.hpp"
+#include "test_device.hpp"
 
 namespace facezip {
 namespace {
+using test::testDevice;
 namespace fs = std::filesystem;
 using compress::chooseRate;
 using compress::efficientPoints;
@@ -121,11 +123,6 @@ TEST(ChooseRate, KeepsTheBudget) {
   EXPECT_EQ(chooseRate(curve, 1.0, 69, 1.0), none);
   EXPECT_EQ(chooseRate(curve, 1.0, 70, 1.0), curve[3]);
   EXPECT_EQ(chooseRate({}, none, 1000, 1.0), none);
-}
-
-const Device& testDevice() {
-  static const Device device = openDevice("cpu");
-  return device;
 }
 
 /// Collects notes.

@@ -12,20 +12,17 @@
 #include "facezip/reconstruct.hpp"
 #include "kind_capture.hpp"
 #include "temporary_directory.hpp"
+#include "test_device.hpp"
 
 namespace facezip {
 namespace {
+using test::testDevice;
 namespace fs = std::filesystem;
 using Method = CompressOptions::Method;
 using test::Kind;
 using test::noise;
 using test::wrinkles;
 using test::writeCapture;
-
-const Device& testDevice() {
-  static const Device device = openDevice("cpu");
-  return device;
-}
 
 CompressOptions optionsOf(Method method, int differences = 4) {
   CompressOptions options;

@@ -11,18 +11,15 @@
 #include "io/staged_directory.hpp"
 #include "kind_capture.hpp"
 #include "temporary_directory.hpp"
+#include "test_device.hpp"
 
 namespace facezip {
 namespace {
+using test::testDevice;
 using Method = CompressOptions::Method;
 using test::Kind;
 using test::noise;
 using test::wrinkles;
-
-const Device& testDevice() {
-  static const Device device = openDevice("cpu");
-  return device;
-}
 
 double otherWrinkles(int x, int y, int c, int n) { return 0.5 * wrinkles(y, 80 - x, c, (7 * n + 3) % 12); }
 double fourOfAKind(int x, int y, int c, int n) { return wrinkles(x, y, c, n % 4); }

@@ -56,8 +56,6 @@
 #define CELL_COLUMNS ((TILE_WIDTH - 1) / SCALE + 3)
 #define CELL_ROWS ((TILE_ROWS - 1) / SCALE + 3)
 
-#define JOIN_(a, b) a##b
-#define JOIN(a, b) JOIN_(a, b)
 #if LANES == 1
 #define VECTOR(type) type
 #else

@@ -15,6 +15,26 @@
 #pragma OPENCL FP_CONTRACT ON
 #define FMA(a, b, c) ((a) * (b) + (c))
 
+// Type names from macros: JOIN(float, WIDTH).
+#define JOIN_(a, b) a##b
+#define JOIN(a, b) JOIN_(a, b)
+
+// Halves added to halves: one order on every device.
+inline float sum_of_16(const float16 value) {
+  const float8 half8 = value.lo + value.hi;
+  const float4 half4 = half8.lo + half8.hi;
+  const float2 half2 = half4.lo + half4.hi;
+  return half2.x + half2.y;
+}
+
+#ifdef EXPRESSION_LANES
+// A symmetric C x C matrix, and the numbers of a cell in the normal equations of the weights (weight_system.cl): four
+// blocks, rounded up to 16, then the right-hand sides.
+#define PAIRS (TEXTURES * (TEXTURES + 1) / 2)
+#define BLOCKS_END ((4 * PAIRS + 15) / 16 * 16)
+#define ENTRIES (BLOCKS_END + TEXTURES * EXPRESSION_LANES)
+#endif
+
 #ifdef WEIGHT_SCALE
 // The weight grid, at 1 / WEIGHT_SCALE of the texture: cell q has its centre at texel (q + 1/2) WEIGHT_SCALE - 1/2, and a
 // texel interpolates linearly between the centres around it; beyond the outer centres the edge repeats. Positions are

@@ -17,8 +17,6 @@
 #define DIFF_T short
 #endif
 
-#define JOIN_(a, b) a##b
-#define JOIN(a, b) JOIN_(a, b)
 #define SAMPLE16 JOIN(SAMPLE_T, 16)
 #define DIFF16 JOIN(DIFF_T, 16)
 #define CONVERT16 JOIN(convert_, DIFF16)

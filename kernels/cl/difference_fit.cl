@@ -21,51 +21,24 @@
 //          CODES             if set, the largest code: 255 or 65535
 // Sums     fixed order: expressions; rows and lanes of an item
 
-#ifndef CHANNELS
-#define CHANNELS 3
-#define DIFF_T short
-#endif
-#ifndef TEXTURES
-#define TEXTURES 4
-#endif
-#ifndef EXPRESSIONS
-#define EXPRESSIONS 20
-#define EXPRESSION_LANES 32
-#endif
-#ifndef LANES
-#define LANES 16
-#define ROWS 16
-#endif
-#define JOIN_(a, b) a##b
-#define JOIN(a, b) JOIN_(a, b)
 #if LANES == 1
 typedef float floats;
 typedef int ints;
 typedef DIFF_T diffs;
 #define TO_FLOATS convert_float
+#define SUM_LANES(value) (value)
 #define CELL_COLUMNS 2
 #else
 typedef float16 floats;
 typedef int16 ints;
 typedef JOIN(DIFF_T, 16) diffs;
 #define TO_FLOATS convert_float16
+#define SUM_LANES sum_of_16
 #define CELL_COLUMNS CELLS_OF_16
 #endif
 #define PLANE (TILE_TEXELS / LANES)  // vectors between the planes of a tile
-#define PAIRS (TEXTURES * (TEXTURES + 1) / 2)
 #define PAIR(i, j) ((i) * ((i) + 1) / 2 + (j))  // j <= i
 #define CELL_FLOATS (TEXTURES * EXPRESSION_LANES)
-
-inline float sum_lanes(const floats value) {
-#if LANES == 1
-  return value;
-#else
-  const float8 half8 = value.lo + value.hi;
-  const float4 half4 = half8.lo + half8.hi;
-  const float2 half2 = half4.lo + half4.hi;
-  return half2.x + half2.y;
-#endif
-}
 
 #if LANES == 1
 // One weight at one texel. A work-item that has a single texel has no use for its neighbours' rows of cells.
@@ -256,8 +229,8 @@ kernel void difference_fit(global const int2* restrict tiles, global const float
     }
     const floats weight = texel_weights[tile * PLANE + line];
     const floats error = squared_error(a, b, d, e);
-    error_sum.x += sum_lanes(error * weight);
-    error_sum.y += sum_lanes(weight > (floats)(0.0f) ? error : (floats)(0.0f));
+    error_sum.x += SUM_LANES(error * weight);
+    error_sum.y += SUM_LANES(weight > (floats)(0.0f) ? error : (floats)(0.0f));
   }
   errors[tile * items + item] = error_sum;
 }

@@ -24,8 +24,6 @@
 #ifndef WIDTH
 #define WIDTH 16
 #endif
-#define JOIN_(a, b) a##b
-#define JOIN(a, b) JOIN_(a, b)
 #define FLOATS JOIN(float, WIDTH)
 #define DIFFS JOIN(DIFF_T, WIDTH)
 #define CONVERT JOIN(convert_float, WIDTH)

@@ -10,23 +10,11 @@
 // Defines  TEXTURES, EXPRESSION_LANES  as in difference_fit.cl
 //          LANES    expressions of a work-item: 16 on CPUs, 1 on GPUs
 
-#ifndef TEXTURES
-#define TEXTURES 4
-#endif
-#ifndef EXPRESSION_LANES
-#define EXPRESSION_LANES 32
-#endif
-#ifndef LANES
-#define LANES 16
-#endif
 #if LANES == 1
 typedef float floats;
 #else
 typedef float16 floats;
 #endif
-#define PAIRS (TEXTURES * (TEXTURES + 1) / 2)
-#define BLOCKS_END ((4 * PAIRS + 15) / 16 * 16)
-#define ENTRIES (BLOCKS_END + TEXTURES * EXPRESSION_LANES)
 #define PAIR(i, j) ((i) > (j) ? (i) * ((i) + 1) / 2 + (j) : (j) * ((j) + 1) / 2 + (i))
 #define PLANE (EXPRESSION_LANES / LANES)
 

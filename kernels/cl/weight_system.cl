@@ -15,31 +15,8 @@
 // Defines  CHANNELS, DIFF_T, TEXTURES, EXPRESSIONS, EXPRESSION_LANES, WEIGHT_SCALE  as in difference_fit.cl
 // Sums     fixed order: rows, then lanes
 
-#ifndef CHANNELS
-#define CHANNELS 3
-#define DIFF_T short
-#endif
-#ifndef TEXTURES
-#define TEXTURES 4
-#endif
-#ifndef EXPRESSIONS
-#define EXPRESSIONS 20
-#define EXPRESSION_LANES 32
-#endif
-#define JOIN_(a, b) a##b
-#define JOIN(a, b) JOIN_(a, b)
 #define DIFFS JOIN(DIFF_T, 16)
 #define CELLS CELLS_OF_16
-#define PAIRS (TEXTURES * (TEXTURES + 1) / 2)
-#define BLOCKS_END ((4 * PAIRS + 15) / 16 * 16)
-#define ENTRIES (BLOCKS_END + TEXTURES * EXPRESSION_LANES)
-
-inline float sum_lanes(const float16 value) {
-  const float8 half8 = value.lo + value.hi;
-  const float4 half4 = half8.lo + half8.hi;
-  const float2 half2 = half4.lo + half4.hi;
-  return half2.x + half2.y;
-}
 
 // How the rows of the tile lie between rows of cells.
 typedef struct {
@@ -79,10 +56,10 @@ static void add_blocks(const Rows* rows, const float16* hats, global const float
       const float16 alone = hats[j] * hats[j];
       const float16 beside = j + 1 < CELLS ? hats[j] * hats[j + 1] : (float16)(0.0f);
       for (int p = 0; p < PAIRS; ++p) {
-        out[p] = sum_lanes(same[r][p] * alone);
-        out[PAIRS + p] = sum_lanes(same[r][p] * beside);
-        out[2 * PAIRS + p] = sum_lanes(below[r][p] * alone);
-        out[3 * PAIRS + p] = sum_lanes(below[r][p] * beside);
+        out[p] = sum_of_16(same[r][p] * alone);
+        out[PAIRS + p] = sum_of_16(same[r][p] * beside);
+        out[2 * PAIRS + p] = sum_of_16(below[r][p] * alone);
+        out[3 * PAIRS + p] = sum_of_16(below[r][p] * beside);
       }
       for (int p = 4 * PAIRS; p < BLOCKS_END; ++p) out[p] = 0.0f;
     }
@@ -126,7 +103,7 @@ static void add_sides(const Rows* rows, const float16* hats, global const float1
   for (int r = 0; r < CELLS; ++r) {
     for (int j = 0; j < CELLS; ++j) {
       global float* out = partial + (r * CELLS + j) * ENTRIES + BLOCKS_END;
-      for (int i = 0; i < TEXTURES; ++i) out[i * EXPRESSION_LANES] = sum_lanes(sides[r][i] * hats[j]);
+      for (int i = 0; i < TEXTURES; ++i) out[i * EXPRESSION_LANES] = sum_of_16(sides[r][i] * hats[j]);
     }
   }
 }

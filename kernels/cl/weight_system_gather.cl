@@ -8,10 +8,6 @@
 //          WEIGHT_SCALE  texels per cell
 // Sums     fixed order: tiles by row, then column
 
-#ifndef ENTRIES
-#define ENTRIES 176
-#endif
-
 kernel void weight_system_gather(global const int* restrict tile_at, global const float16* restrict partial,
                                  global float16* restrict system, const int tile_columns, const int tile_rows,
                                  const int first_row, const int first_cell_row, const int cell_columns,

@@ -3,21 +3,7 @@
 // Buffers, defines  as in weight_system.cl
 // Sums     fixed order: rows, then columns of the tile
 
-#ifndef CHANNELS
-#define CHANNELS 3
-#define DIFF_T short
-#endif
-#ifndef TEXTURES
-#define TEXTURES 4
-#endif
-#ifndef EXPRESSIONS
-#define EXPRESSIONS 20
-#define EXPRESSION_LANES 32
-#endif
 #define CELLS CELLS_OF_16
-#define PAIRS (TEXTURES * (TEXTURES + 1) / 2)
-#define BLOCKS_END ((4 * PAIRS + 15) / 16 * 16)
-#define ENTRIES (BLOCKS_END + TEXTURES * EXPRESSION_LANES)
 
 inline float hat(const float position, const int cell) { return fmax(1.0f - fabs(position - (float)cell), 0.0f); }
 

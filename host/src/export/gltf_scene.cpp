@@ -1,0 +1,291 @@
+#include "export/gltf_scene.hpp"
+
+#include <fmt/format.h>
+
+// A system header: its own warnings are not ours.
+#include <tiny_gltf.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cassert>
+#include <limits>
+#include <span>
+#include <utility>
+
+#include "facezip/error.hpp"
+#include "facezip/version.hpp"
+
+namespace facezip::exporting {
+namespace fs = std::filesystem;
+namespace {
+
+tinygltf::Value toValue(const nlohmann::json& json) {
+  if (json.is_boolean()) return tinygltf::Value(json.get<bool>());
+  if (json.is_number_integer()) return tinygltf::Value(json.get<int>());
+  if (json.is_number()) return tinygltf::Value(json.get<double>());
+  if (json.is_string()) return tinygltf::Value(json.get<std::string>());
+  if (json.is_array()) {
+    tinygltf::Value::Array array;
+    for (const nlohmann::json& element : json) array.push_back(toValue(element));
+    return tinygltf::Value(array);
+  }
+  assert(json.is_object());
+  tinygltf::Value::Object object;
+  for (const auto& [key, element] : json.items()) object[key] = toValue(element);
+  return tinygltf::Value(object);
+}
+
+/// Collects accessors, and their bytes in one buffer.
+class Accessors {
+ public:
+  explicit Accessors(tinygltf::Model& model) : model_(model) { model_.buffers.emplace_back(); }
+
+  /// values  count x components
+  int addFloats(std::span<const float> values, int components, bool with_bounds) {
+    tinygltf::Accessor accessor = describe(values, components, with_bounds);
+    accessor.bufferView = addView(std::as_bytes(values), TINYGLTF_TARGET_ARRAY_BUFFER);
+    return push(std::move(accessor));
+  }
+
+  /// Vectors of three of which most are 0: only the others are stored. The format wants one at least.
+  int addSparse(std::span<const float> values, bool with_bounds) {
+    std::vector<std::uint32_t> indices;
+    std::vector<float> kept;
+    for (std::size_t v = 0; v < values.size() / 3; ++v) {
+      const std::span<const float> vector = values.subspan(3 * v, 3);
+      if (std::ranges::all_of(vector, [](float x) { return x == 0.0f; })) continue;
+      indices.push_back(static_cast<std::uint32_t>(v));
+      kept.insert(kept.end(), vector.begin(), vector.end());
+    }
+    if (2 * kept.size() >= values.size()) return addFloats(values, 3, with_bounds);
+    if (indices.empty()) {
+      indices.push_back(0);
+      kept.assign(3, 0.0f);
+    }
+    tinygltf::Accessor accessor = describe(values, 3, with_bounds);
+    accessor.sparse.isSparse = true;
+    accessor.sparse.count = static_cast<int>(indices.size());
+    accessor.sparse.indices.componentType = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+    accessor.sparse.indices.bufferView = addView(std::as_bytes(std::span(indices)), 0);
+    accessor.sparse.values.bufferView = addView(std::as_bytes(std::span(kept)), 0);
+    return push(std::move(accessor));
+  }
+
+  int addIndices(std::span<const int> indices) {
+    tinygltf::Accessor accessor;
+    accessor.componentType = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+    accessor.type = TINYGLTF_TYPE_SCALAR;
+    accessor.count = indices.size();
+    accessor.bufferView = addView(std::as_bytes(indices), TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+    return push(std::move(accessor));
+  }
+
+  std::size_t bytes() const { return model_.buffers[0].data.size(); }
+
+ private:
+  static tinygltf::Accessor describe(std::span<const float> values, int components, bool with_bounds) {
+    tinygltf::Accessor accessor;
+    accessor.componentType = TINYGLTF_COMPONENT_TYPE_FLOAT;
+    accessor.type = components == 2 ? TINYGLTF_TYPE_VEC2 : TINYGLTF_TYPE_VEC3;
+    accessor.count = values.size() / static_cast<std::size_t>(components);
+    if (!with_bounds) return accessor;
+    const std::size_t stride = static_cast<std::size_t>(components);
+    for (std::size_t c = 0; c < stride; ++c) {
+      float least = std::numeric_limits<float>::infinity();
+      float most = -least;
+      for (std::size_t i = c; i < values.size(); i += stride) {
+        least = std::min(least, values[i]);
+        most = std::max(most, values[i]);
+      }
+      accessor.minValues.push_back(static_cast<double>(least));
+      accessor.maxValues.push_back(static_cast<double>(most));
+    }
+    return accessor;
+  }
+
+  int addView(std::span<const std::byte> bytes, int target) {
+    std::vector<unsigned char>& data = model_.buffers[0].data;
+    tinygltf::BufferView view;
+    view.buffer = 0;
+    view.byteOffset = data.size();  // all elements are of 4 bytes: always aligned
+    view.byteLength = bytes.size();
+    view.target = target;
+    const auto* begin = reinterpret_cast<const unsigned char*>(bytes.data());
+    data.insert(data.end(), begin, begin + bytes.size());
+    model_.bufferViews.push_back(std::move(view));
+    return static_cast<int>(model_.bufferViews.size()) - 1;
+  }
+
+  int push(tinygltf::Accessor accessor) {
+    model_.accessors.push_back(std::move(accessor));
+    return static_cast<int>(model_.accessors.size()) - 1;
+  }
+
+  tinygltf::Model& model_;
+};
+
+/// Rows of `matrix`, as split vertices have them.
+std::vector<float> gather(const Eigen::MatrixXd& matrix, std::span<const int> rows) {
+  std::vector<float> values;
+  values.reserve(rows.size() * static_cast<std::size_t>(matrix.cols()));
+  for (const int row : rows) {
+    for (Eigen::Index c = 0; c < matrix.cols(); ++c) values.push_back(static_cast<float>(matrix(row, c)));
+  }
+  return values;
+}
+
+tinygltf::Primitive makePrimitive(const GltfScene& scene, Accessors& accessors) {
+  const SplitVertices split = splitVertices(scene.neutral);
+  const Eigen::MatrixX3d neutral = scene.neutral.positions * scene.metres_per_unit;
+  const Eigen::MatrixX3d normals = vertexNormals(neutral, scene.neutral.triangles);
+  tinygltf::Primitive primitive;
+  primitive.mode = TINYGLTF_MODE_TRIANGLES;
+  primitive.indices = accessors.addIndices(split.corners);
+  primitive.attributes["POSITION"] = accessors.addFloats(gather(neutral, split.positions), 3, true);
+  primitive.attributes["NORMAL"] = accessors.addFloats(gather(normals, split.positions), 3, false);
+  if (scene.neutral.uvs.rows() > 0) {
+    Eigen::MatrixX2d uvs = scene.neutral.uvs;
+    uvs.col(1) = 1.0 - uvs.col(1).array();
+    primitive.attributes["TEXCOORD_0"] = accessors.addFloats(gather(uvs, split.uvs), 2, false);
+  }
+  for (const MorphTarget& target : scene.targets) {
+    if (target.positions.rows() != neutral.rows()) {
+      throw InputError({"", target.name, fmt::format("{} vertices as the neutral has", neutral.rows()),
+                        fmt::format("{}", target.positions.rows()), ""});
+    }
+    const Eigen::MatrixX3d moved = target.positions * scene.metres_per_unit;
+    const Eigen::MatrixX3d turned = vertexNormals(moved, scene.neutral.triangles);
+    std::map<std::string, int>& attributes = primitive.targets.emplace_back();
+    attributes["POSITION"] = accessors.addSparse(gather(moved - neutral, split.positions), true);
+    attributes["NORMAL"] = accessors.addSparse(gather(turned - normals, split.positions), false);
+  }
+  return primitive;
+}
+
+int addTexture(tinygltf::Model& model, const std::string& uri) {
+  tinygltf::Image image;
+  image.uri = uri;
+  model.images.push_back(std::move(image));
+  tinygltf::Texture texture;
+  texture.source = static_cast<int>(model.images.size()) - 1;
+  texture.sampler = 0;
+  model.textures.push_back(std::move(texture));
+  return static_cast<int>(model.textures.size()) - 1;
+}
+
+tinygltf::Material makeMaterial(const GltfScene& scene, tinygltf::Model& model) {
+  tinygltf::Material material;
+  material.name = scene.name;
+  material.pbrMetallicRoughness.metallicFactor = 0.0;
+  material.pbrMetallicRoughness.roughnessFactor = 0.6;  // of skin, roughly
+  if (!scene.base_colour_texture.empty() || !scene.normal_texture.empty()) {
+    tinygltf::Sampler sampler;
+    sampler.minFilter = TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR;
+    sampler.magFilter = TINYGLTF_TEXTURE_FILTER_LINEAR;
+    sampler.wrapS = sampler.wrapT = TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+    model.samplers.push_back(std::move(sampler));
+  }
+  if (!scene.base_colour_texture.empty()) {
+    material.pbrMetallicRoughness.baseColorTexture.index = addTexture(model, scene.base_colour_texture);
+  }
+  if (!scene.normal_texture.empty()) material.normalTexture.index = addTexture(model, scene.normal_texture);
+  if (scene.material_extras.is_object()) material.extras = toValue(scene.material_extras);
+  return material;
+}
+
+tinygltf::Mesh makeMesh(const GltfScene& scene, tinygltf::Primitive primitive) {
+  tinygltf::Mesh mesh;
+  mesh.name = scene.name;
+  primitive.material = 0;
+  mesh.primitives.push_back(std::move(primitive));
+  mesh.weights.assign(scene.targets.size(), 0.0);
+  tinygltf::Value::Array names;
+  for (const MorphTarget& target : scene.targets) names.emplace_back(target.name);
+  if (!names.empty()) mesh.extras = tinygltf::Value(tinygltf::Value::Object{{"targetNames", tinygltf::Value(names)}});
+  return mesh;
+}
+
+/// tinygltf says nothing of a full disk.
+void requireWritten(const fs::path& file, std::size_t least_bytes) {
+  std::error_code error;
+  const std::uintmax_t bytes = fs::file_size(file, error);
+  if (error || bytes < least_bytes) throw OutputError(file, "could not be written whole", "is the disk full?");
+}
+
+}  // namespace
+
+SplitVertices splitVertices(const geometry::TriangleMesh& mesh) {
+  const bool has_uvs = mesh.uv_triangles.rows() > 0;
+  const auto corner = [&](Eigen::Index t, int c) {
+    return std::pair(mesh.triangles(t, c), has_uvs ? mesh.uv_triangles(t, c) : -1);
+  };
+  std::vector<std::pair<int, int>> pairs;
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
+    for (int c = 0; c < 3; ++c) pairs.push_back(corner(t, c));
+  }
+  std::ranges::sort(pairs);
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  SplitVertices split;
+  for (const auto& [position, uv] : pairs) {
+    split.positions.push_back(position);
+    split.uvs.push_back(uv);
+  }
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
+    for (int c = 0; c < 3; ++c) {
+      split.corners.push_back(static_cast<int>(std::ranges::lower_bound(pairs, corner(t, c)) - pairs.begin()));
+    }
+  }
+  return split;
+}
+
+Eigen::MatrixX3d vertexNormals(const Eigen::MatrixX3d& positions, const Eigen::MatrixX3i& triangles) {
+  Eigen::MatrixX3d normals = Eigen::MatrixX3d::Zero(positions.rows(), 3);
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    const Eigen::RowVector3d a = positions.row(triangles(t, 0));
+    const Eigen::RowVector3d b = positions.row(triangles(t, 1));
+    const Eigen::RowVector3d c = positions.row(triangles(t, 2));
+    const Eigen::RowVector3d area = (b - a).cross(c - a);
+    for (int corner = 0; corner < 3; ++corner) normals.row(triangles(t, corner)) += area;
+  }
+  for (Eigen::Index v = 0; v < normals.rows(); ++v) {
+    const double length = normals.row(v).norm();
+    if (length > 0.0) {
+      normals.row(v) /= length;
+    } else {
+      normals.row(v) << 0.0, 0.0, 1.0;
+    }
+  }
+  return normals;
+}
+
+void writeGltf(const fs::path& file, const GltfScene& scene) {
+  tinygltf::Model model;
+  model.asset.version = "2.0";
+  model.asset.generator = "facezip " FACEZIP_VERSION;
+  Accessors accessors(model);
+  tinygltf::Primitive primitive = makePrimitive(scene, accessors);
+  model.materials.push_back(makeMaterial(scene, model));
+  model.meshes.push_back(makeMesh(scene, std::move(primitive)));
+  tinygltf::Node node;
+  node.name = scene.name;
+  node.mesh = 0;
+  model.nodes.push_back(std::move(node));
+  tinygltf::Scene nodes;
+  nodes.nodes.push_back(0);
+  model.scenes.push_back(std::move(nodes));
+  model.defaultScene = 0;
+
+  const bool binary = file.extension() == ".glb";
+  tinygltf::TinyGLTF writer;
+  // Textures stay where they are: a writer that writes nothing keeps their paths.
+  writer.SetImageWriter(
+      [](const std::string*, const std::string*, const tinygltf::Image*, bool, std::string*, void*) { return false; },
+      nullptr);
+  if (!writer.WriteGltfSceneToFile(&model, file.string(), false, false, /*prettyPrint=*/true, binary)) {
+    throw OutputError(file, "could not be written", "");
+  }
+  requireWritten(binary ? file : fs::path(file).replace_extension(".bin"), accessors.bytes());
+  requireWritten(file, 1);
+}
+
+}  // namespace facezip::exporting

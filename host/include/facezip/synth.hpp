@@ -23,6 +23,9 @@ struct SynthOptions {
   std::vector<std::string> maps = {"albedo", "normal"};
   /// Chooses skin, proportions, crease pattern and how strongly each expression is performed.
   std::uint64_t seed = 1;
+  /// Also write OUTPUT/template: another head (neutral.obj) performing every single action (NAME.obj), what `rig`
+  /// takes. Expression 21 and those after it are the subject's own single actions, under the same names.
+  bool rig_template = false;
 };
 
 /// Writes a capture directory: neutral.obj, expressions/NAME.obj, MAP/neutral.png, MAP/NAME.png and capture.json.

@@ -147,6 +147,24 @@ void paintAll(const fs::path& folder, const synth::TexturePainter& painter,
   }
 }
 
+/// A template to rig with: every single action, by a face of other proportions in the same topology.
+void writeRigTemplate(const fs::path& folder, std::uint64_t seed, Progress& progress) {
+  const std::uint64_t template_seed = synth::deriveSeed(seed, "rig template");
+  const synth::HeadShape shape(template_seed);
+  const synth::HeadMesh head(shape);
+  const std::string tail = objTail(head.mesh);
+  const std::vector<synth::Action>& actions = synth::actionBasis();
+  io::createDirectories(folder);
+  writeObj(folder / "neutral.obj", head.mesh.positions, tail);
+  progress.stage("template", actions.size());
+  tbb::parallel_for(std::size_t{0}, actions.size(), [&](std::size_t i) {
+    progress.checkCancelled();
+    writeObj(folder / (actions[i].name + ".obj"), synth::deform(head, shape, {{&actions[i], 1.0}}, template_seed),
+             tail);
+  });
+  progress.advance(actions.size());
+}
+
 }  // namespace
 
 void synthesizeCapture(const fs::path& output, const SynthOptions& options, Progress& progress) {
@@ -159,6 +177,7 @@ void synthesizeCapture(const fs::path& output, const SynthOptions& options, Prog
       performAll(staged.path(), shape, head, expressions, options.seed, progress);
   const synth::TexturePainter painter(head, options.seed, options.resolution);
   paintAll(staged.path(), painter, performances, formats, progress);
+  if (options.rig_template) writeRigTemplate(staged.path() / "template", options.seed, progress);
   writeManifest(staged.path(), options, formats, expressions);
   staged.commit();
 }

@@ -29,7 +29,7 @@ void blendFrames(const Arguments& arguments, Progress& progress) {
   const Package package = Package::open(arguments.package);
   const AnimationClip clip = readFrames(arguments, package);
   const FramePattern pattern(arguments.output, !arguments.animation.empty(), package.maps().size());
-  Blender blender(package, openDevice(arguments.device));
+  Blender blender(package, openDevice(arguments.device, &progress));
   std::vector<std::byte> frame;
   progress.stage("blending", static_cast<std::size_t>(clip.frames()));
   for (int f = 0; f < clip.frames(); ++f) {

@@ -82,7 +82,7 @@ void addEvaluateCommand(CLI::App& app, const CommonOptions& common) {
     const CancelOnSignal cancel(progress);
     const Package package = Package::open(arguments->package);
     const Evaluation evaluation =
-        evaluatePackage(openCapture(arguments->capture), package, options, openDevice(arguments->device), progress);
+        evaluatePackage(openCapture(arguments->capture), package, options, openDevice(arguments->device, &progress), progress);
     if (!arguments->report.empty()) writeReport(arguments->report, toJson(evaluation));
     if (!arguments->picture.empty()) writeErrorSheet(arguments->picture, evaluation);
     printEvaluation(evaluation);

@@ -27,7 +27,7 @@ void addReconstructCommand(CLI::App& app, const CommonOptions& common) {
     TerminalProgress progress(common.quiet);
     const CancelOnSignal cancel(progress);
     const Package package = Package::open(arguments->package);
-    reconstruct(package, arguments->output, arguments->expressions, openDevice(arguments->device), progress);
+    reconstruct(package, arguments->output, arguments->expressions, openDevice(arguments->device, &progress), progress);
   });
 }
 

@@ -58,10 +58,20 @@ void TerminalProgress::advance(std::size_t done) {
   const auto now = std::chrono::steady_clock::now();
   if (!terminal_ || now - last_shown_ < kRedrawInterval) return;
   last_shown_ = now;
-  clearLine();
   const std::string share =
       total_ > 0 ? fmt::format(" {:3.0f} %", 100.0 * static_cast<double>(done) / static_cast<double>(total_)) : "";
-  fmt::print(stderr, "{}{} ...", stage_, share);
+  showLine(stage_ + share);
+}
+
+void TerminalProgress::busy(std::string_view what) {
+  if (!terminal_) return;
+  showLine(std::string(what));
+  last_shown_ = {};  // the stage may take the line back at once
+}
+
+void TerminalProgress::showLine(const std::string& text) {
+  clearLine();
+  fmt::print(stderr, "{} ...", text);
   std::fflush(stderr);
   line_shown_ = true;
 }

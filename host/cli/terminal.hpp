@@ -18,9 +18,11 @@ class TerminalProgress : public Progress {
   ~TerminalProgress() override;
   void stage(std::string_view name, std::size_t total) override;
   void advance(std::size_t done) override;
+  void busy(std::string_view what) override;
   void note(std::string_view message) override;
 
  private:
+  void showLine(const std::string& text);
   void clearLine();
   bool quiet_;
   bool terminal_;

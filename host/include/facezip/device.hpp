@@ -11,6 +11,7 @@
 
 namespace facezip {
 
+class Progress;
 namespace device {
 class DeviceContext;
 }
@@ -67,6 +68,9 @@ class Device {
 ///   "P:D", "P"      device D (default 0) of platform P, as `facezip devices` counts them
 ///   other text      the first device whose name or platform contains it, upper and lower case alike
 /// Throws DeviceError that lists what there is, or says how to install a driver when there is nothing.
-Device openDevice(std::string_view selector = "auto");
+/// progress  told when kernels are compiled, which takes seconds the first time: binaries are kept in
+/// FACEZIP_CACHE_DIR,
+///           else in the user's cache folder. May be null; else it outlives every copy of the device
+Device openDevice(std::string_view selector = "auto", Progress* progress = nullptr);
 
 }  // namespace facezip

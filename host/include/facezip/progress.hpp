@@ -23,6 +23,8 @@ class Progress {
   virtual void stage(std::string_view name, std::size_t total);
   /// `done` of the current stage's steps are finished.
   virtual void advance(std::size_t done);
+  /// Something outside the stage takes a while ("compiling kernels"); the stage goes on with the next advance().
+  virtual void busy(std::string_view what);
   /// A fact the user should see: what was guessed, chosen or skipped.
   virtual void note(std::string_view message);
 

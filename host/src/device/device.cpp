@@ -108,7 +108,7 @@ std::vector<DeviceInfo> listDevices() {
 
 const DeviceInfo& Device::info() const { return context_->info(); }
 
-Device openDevice(std::string_view selector) {
+Device openDevice(std::string_view selector, Progress* progress) {
   const std::vector<FoundDevice> found = findDevices();
   if (found.empty()) {
     throw DeviceError("opening an OpenCL device", 0,
@@ -122,7 +122,7 @@ Device openDevice(std::string_view selector) {
       available += fmt::format("\n  {}  {} ({})", f.info.selector, f.info.name, f.info.platform);
     throw DeviceError(fmt::format("--device {}", selector), 0, fmt::format("no such device; there are:{}", available));
   }
-  return Device(std::make_shared<device::DeviceContext>(std::move(chosen->device), std::move(chosen->info)));
+  return Device(std::make_shared<device::DeviceContext>(std::move(chosen->device), std::move(chosen->info), progress));
 }
 
 }  // namespace facezip

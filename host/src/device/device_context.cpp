@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
 
 #include "device/kernel_sources.hpp"
 
@@ -26,7 +27,44 @@ std::string kernelSource(std::string_view file_name) {
   return find("common.cl") + "\n#line 1 \"" + std::string(file_name) + "\"\n" + find(file_name);
 }
 
-DeviceContext::DeviceContext(cl::Device device, DeviceInfo info) : info_(std::move(info)), device_(std::move(device)) {
+namespace {
+
+/// Everything that decides what a binary is.
+std::string cacheKey(const cl::Device& device, const DeviceInfo& info, const std::string& options,
+                     const std::string& source) {
+  const cl::Platform platform(device.getInfo<CL_DEVICE_PLATFORM>());
+  return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", platform.getInfo<CL_PLATFORM_NAME>(),
+                     platform.getInfo<CL_PLATFORM_VERSION>(), info.vendor, info.name, info.version, info.driver,
+                     options, source);
+}
+
+/// The program of a kept binary; none when the driver refuses it.
+std::optional<cl::Program> fromBinary(const cl::Context& context, const cl::Device& device,
+                                      const std::vector<unsigned char>& binary, const std::string& options) {
+  try {
+    cl::Program program(context, {device}, {binary});
+    program.build({device}, options.c_str());
+    // Some drivers take any bytes and find out when kernels are asked for.
+    if (program.getInfo<CL_PROGRAM_NUM_KERNELS>() == 0) return std::nullopt;
+    return program;
+  } catch (const cl::Error&) {
+    return std::nullopt;
+  }
+}
+
+std::vector<unsigned char> binaryOf(const cl::Program& program) {
+  try {
+    const std::vector<std::vector<unsigned char>> binaries = program.getInfo<CL_PROGRAM_BINARIES>();
+    return binaries.empty() ? std::vector<unsigned char>() : binaries.front();
+  } catch (const cl::Error&) {
+    return {};  // a driver that gives none: compiled in every process
+  }
+}
+
+}  // namespace
+
+DeviceContext::DeviceContext(cl::Device device, DeviceInfo info, Progress* progress, ProgramCache cache)
+    : info_(std::move(info)), progress_(progress), cache_(std::move(cache)), device_(std::move(device)) {
   try {
     context_ = cl::Context(device_);
     queue_ = cl::CommandQueue(context_, device_, CL_QUEUE_PROFILING_ENABLE);
@@ -35,15 +73,26 @@ DeviceContext::DeviceContext(cl::Device device, DeviceInfo info) : info_(std::mo
   }
 }
 
+cl::Program DeviceContext::buildProgram(std::string_view file_name, const std::string& options) {
+  const std::string source = kernelSource(file_name);
+  const std::string key = cacheKey(device_, info_, options, source);
+  if (const auto binary = cache_.find(key)) {
+    if (auto program = fromBinary(context_, device_, *binary, options)) return *program;
+  }
+  if (progress_ != nullptr) progress_->busy(fmt::format("compiling kernels ({})", file_name));
+  cl::Program program(context_, source);
+  program.build({device_}, options.c_str());
+  cache_.store(key, binaryOf(program));
+  return program;
+}
+
 cl::Kernel DeviceContext::kernel(std::string_view file_name, std::string_view name, const std::string& defines) {
   const std::scoped_lock lock(programs_mutex_);
   const std::string key = fmt::format("{} {}", file_name, defines);
   auto found = programs_.find(key);
   try {
     if (found == programs_.end()) {
-      cl::Program program(context_, kernelSource(file_name));
-      program.build({device_}, fmt::format("-cl-std=CL1.2 {}", defines).c_str());
-      found = programs_.emplace(key, std::move(program)).first;
+      found = programs_.emplace(key, buildProgram(file_name, fmt::format("-cl-std=CL1.2 {}", defines))).first;
     }
     return cl::Kernel(found->second, std::string(name).c_str());
   } catch (const cl::BuildError& error) {

@@ -25,7 +25,9 @@
 #include <string_view>
 #include <vector>
 
+#include "device/program_cache.hpp"
 #include "facezip/device.hpp"
+#include "facezip/progress.hpp"
 
 namespace facezip::device {
 
@@ -34,7 +36,9 @@ enum class KernelVariant { kAuto, kCpu, kGpu };
 
 class DeviceContext {
  public:
-  explicit DeviceContext(cl::Device device, DeviceInfo info);
+  /// progress  told when kernels are compiled; may be null, else it outlives the context
+  explicit DeviceContext(cl::Device device, DeviceInfo info, Progress* progress = nullptr,
+                         ProgramCache cache = ProgramCache::ofUser());
 
   const DeviceInfo& info() const { return info_; }
   const cl::Context& context() const { return context_; }
@@ -43,7 +47,8 @@ class DeviceContext {
   const cl::CommandQueue& queue() const { return queue_; }
 
   /// Returns kernel `name` of kernels/cl/`file_name`, built with `defines` ("-D NAME=VALUE ...").
-  /// Programs are built once per (file, defines). Throws DeviceError with the build log.
+  /// Programs are built once per (file, defines), from the binary of an earlier process where the cache has one that
+  /// the driver takes. Throws DeviceError with the build log.
   cl::Kernel kernel(std::string_view file_name, std::string_view name, const std::string& defines = "");
 
   /// The variant that runs when `variant` is asked for: kAuto goes by the device's type. Mesa's llvmpipe, a CPU, always
@@ -82,7 +87,11 @@ class DeviceContext {
   void finish() const;
 
  private:
+  cl::Program buildProgram(std::string_view file_name, const std::string& options);
+
   DeviceInfo info_;
+  Progress* progress_;
+  ProgramCache cache_;
   cl::Device device_;
   cl::Context context_;
   cl::CommandQueue queue_;

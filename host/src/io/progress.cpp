@@ -4,6 +4,7 @@ namespace facezip {
 
 void Progress::stage(std::string_view, std::size_t) {}
 void Progress::advance(std::size_t) {}
+void Progress::busy(std::string_view) {}
 void Progress::note(std::string_view) {}
 
 void Progress::checkCancelled() const {

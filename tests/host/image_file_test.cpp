@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "facezip/error.hpp"
+#include "image/image_format.hpp"
 #include "temporary_directory.hpp"
 
 namespace facezip {
@@ -59,11 +60,69 @@ TEST_P(ImageFile, BandsOfAnyHeightGiveTheSamplesWritten) {
   }
 }
 
+/// PNG files that are not stored as they are read: OpenImageIO's part.
+const std::vector<unsigned char> kPalettePng = {
+    0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44, 0x52, 0x00, 0x00,
+    0x00, 0x02, 0x00, 0x00, 0x00, 0x01, 0x08, 0x03, 0x00, 0x00, 0x00, 0xc3, 0xfc, 0x8f, 0xb8, 0x00, 0x00, 0x00,
+    0x06, 0x50, 0x4c, 0x54, 0x45, 0x0a, 0x14, 0x1e, 0x28, 0x32, 0x3c, 0xd5, 0x1b, 0xb4, 0xe9, 0x00, 0x00, 0x00,
+    0x0b, 0x49, 0x44, 0x41, 0x54, 0x78, 0x9c, 0x63, 0x60, 0x64, 0x00, 0x00, 0x00, 0x05, 0x00, 0x02, 0xd1, 0x66,
+    0x33, 0x78, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
+const std::vector<unsigned char> kTransparentColourPng = {
+    0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44, 0x52, 0x00, 0x00,
+    0x00, 0x02, 0x00, 0x00, 0x00, 0x01, 0x08, 0x02, 0x00, 0x00, 0x00, 0x7b, 0x40, 0xe8, 0xdd, 0x00, 0x00, 0x00,
+    0x06, 0x74, 0x52, 0x4e, 0x53, 0x00, 0x04, 0x00, 0x05, 0x00, 0x06, 0x74, 0x8e, 0xc6, 0x8f, 0x00, 0x00, 0x00,
+    0x0f, 0x49, 0x44, 0x41, 0x54, 0x78, 0x9c, 0x63, 0x60, 0x64, 0x62, 0x66, 0x61, 0x65, 0x03, 0x00, 0x00, 0x3f,
+    0x00, 0x16, 0x21, 0xba, 0xd4, 0x54, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
+
+std::vector<int> samplesOf(const std::filesystem::path& file, int channels) {
+  const image::Image image = image::readImage(file);
+  EXPECT_EQ(image.shape, (image::ImageShape{2, 1, channels, image::SampleType::kUint8}));
+  std::vector<int> samples;
+  for (const std::byte sample : image.samples) samples.push_back(static_cast<int>(sample));
+  return samples;
+}
+
+TEST(ImageReader, PalettesAndTransparentColoursAreDecoded) {
+  const test::TemporaryDirectory folder;
+  const auto write = [&](const char* name, const std::vector<unsigned char>& bytes) {
+    std::ofstream stream(folder / name, std::ios::binary);
+    stream.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  };
+  write("palette.png", kPalettePng);
+  write("colour.png", kTransparentColourPng);
+  EXPECT_EQ(samplesOf(folder / "palette.png", 3), (std::vector<int>{40, 50, 60, 10, 20, 30}));
+  EXPECT_EQ(samplesOf(folder / "colour.png", 4), (std::vector<int>{1, 2, 3, 255, 4, 5, 6, 0}));
+}
+
+/// Two libraries handle PNG files: each must read what the other wrote.
+TEST_P(ImageFile, OpenImageIoAgrees) {
+  const test::TemporaryDirectory folder;
+  const std::filesystem::path file = folder / GetParam().name;
+  const image::Image image = ramp(37, 21, GetParam().channels, GetParam().type);
+  const auto readBy = [&](image::SampleInput& input) {
+    EXPECT_EQ(input.shape(), image.shape);
+    std::vector<std::byte> samples(image.samples.size());
+    input.readRows(0, image.shape.height, samples);
+    return samples;
+  };
+  for (const char* colour_space : {"", "sRGB", "linear"}) {
+    image::writeImage(file, image, colour_space);
+    EXPECT_EQ(readBy(*image::anyFormat().open(file)), image.samples) << colour_space;
+    const auto output = image::anyFormat().create(file, image.shape, colour_space);
+    output->writeRows(0, image.shape.height, image.samples);
+    output->close();
+    EXPECT_EQ(image::readImage(file).samples, image.samples) << colour_space;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Formats, ImageFile,
                          testing::Values(FileCase{"g8.png", 1, image::SampleType::kUint8},
                                          FileCase{"rgb8.png", 3, image::SampleType::kUint8},
                                          FileCase{"rgba8.png", 4, image::SampleType::kUint8},
+                                         FileCase{"ga8.png", 2, image::SampleType::kUint8},
+                                         FileCase{"g16.png", 1, image::SampleType::kUint16},
                                          FileCase{"rgb16.png", 3, image::SampleType::kUint16},
+                                         FileCase{"rgba16.png", 4, image::SampleType::kUint16},
                                          FileCase{"rgb16.tif", 3, image::SampleType::kUint16},
                                          FileCase{"rgb.exr", 3, image::SampleType::kFloat32},
                                          FileCase{"g.tif", 1, image::SampleType::kFloat32}),

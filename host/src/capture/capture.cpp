@@ -1,6 +1,5 @@
 #include "facezip/capture.hpp"
 
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -9,19 +8,17 @@
 #include <set>
 
 #include "capture/capture_json.hpp"
+#include "image/image_format.hpp"
 
 namespace facezip {
 namespace fs = std::filesystem;
 namespace {
 
-/// Extensions that OpenImageIO reads, in lower case with the dot.
+/// Extensions of images that can be read, in lower case with the dot.
 const std::set<std::string>& imageExtensions() {
   static const std::set<std::string> extensions = [] {
-    std::set<std::string> all;
-    for (const auto& [format, list] : OIIO::get_extension_map()) {
-      for (const std::string& extension : list) all.insert("." + extension);
-    }
-    return all;
+    const std::vector<std::string> all = image::anyFormat().extensions();
+    return std::set<std::string>(all.begin(), all.end());
   }();
   return extensions;
 }

@@ -1,4 +1,4 @@
-// image_file.hpp - images on disk, read and written in bands of rows through OpenImageIO.
+// image_file.hpp - images on disk, read and written in bands of rows.
 #pragma once
 
 #include <cstddef>
@@ -24,6 +24,9 @@ std::string sampleTypeName(SampleType type);
 constexpr float unit255(SampleType type) {
   return type == SampleType::kUint8 ? 1.0f : type == SampleType::kUint16 ? 255.0f / 65535.0f : 255.0f;
 }
+
+class SampleInput;
+class SampleOutput;
 
 struct ImageShape {
   int width = 0;
@@ -55,11 +58,9 @@ class ImageReader {
   void readRows(int begin, int end, std::span<std::byte> out);
 
  private:
-  struct Input;
-  void readTiledRows(int begin, int end, std::span<std::byte> out);
   std::filesystem::path path_;
   ImageShape shape_;
-  std::unique_ptr<Input> input_;
+  std::unique_ptr<SampleInput> input_;
 };
 
 /// Writes an image from top to bottom.
@@ -68,7 +69,7 @@ class ImageWriter {
   /// Creates `path`; the extension decides the format. Throws InputError for an unknown extension or a format that
   /// cannot hold the shape, OutputError if the file cannot be created.
   /// `colour_space` is recorded where the format can ("sRGB", "linear"; empty: not recorded).
-  ImageWriter(std::filesystem::path path, const ImageShape& shape, const std::string& colour_space = "");
+  ImageWriter(const std::filesystem::path& path, const ImageShape& shape, const std::string& colour_space = "");
   ~ImageWriter();
   ImageWriter(ImageWriter&&) noexcept;
   ImageWriter& operator=(ImageWriter&&) noexcept;
@@ -80,11 +81,9 @@ class ImageWriter {
   void close();
 
  private:
-  struct Output;
-  std::filesystem::path path_;
   ImageShape shape_;
   int next_row_ = 0;
-  std::unique_ptr<Output> output_;
+  std::unique_ptr<SampleOutput> output_;
 };
 
 /// A whole image in memory, for small ones (coverage masks, weight atlases, contact sheets).

@@ -1,0 +1,64 @@
+// image_format.hpp - what image_file.hpp reads and writes through: PNG files by libspng, all others by OpenImageIO.
+//
+// PNG is what packages and frames are made of, and Debian's OpenImageIO brings 250 libraries: loading them takes longer
+// than blending a frame. So a program may leave OpenImageIO to a module that is loaded when a file asks for it.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "image/image_file.hpp"
+
+namespace facezip::image {
+
+/// One image, opened for reading; ImageReader says what its functions do.
+class SampleInput {
+ public:
+  virtual ~SampleInput() = default;
+  virtual ImageShape shape() const = 0;
+  virtual void readRows(int begin, int end, std::span<std::byte> out) = 0;
+};
+
+/// One image, opened for writing; ImageWriter says what its functions do.
+class SampleOutput {
+ public:
+  virtual ~SampleOutput() = default;
+  virtual void writeRows(int first_row, int row_count, std::span<const std::byte> rows) = 0;
+  virtual void close() = 0;
+};
+
+/// Opens a PNG file whose samples are stored as they are: 8 or 16 bits, neither palette nor transparent colour, not
+/// interlaced. Null for every other file, which is left to anyFormat().
+std::unique_ptr<SampleInput> openPng(const std::filesystem::path& path);
+
+/// Creates a PNG file. Null for what PNG cannot hold (floats) and names that do not end in .png.
+/// Throws OutputError.
+std::unique_ptr<SampleOutput> createPng(const std::filesystem::path& path, const ImageShape& shape,
+                                        const std::string& colour_space);
+
+/// Every format that OpenImageIO knows.
+class AnyFormat {
+ public:
+  virtual ~AnyFormat() = default;
+  /// Throws InputError.
+  virtual std::unique_ptr<SampleInput> open(const std::filesystem::path& path) = 0;
+  /// Throws InputError for an unknown extension, OutputError.
+  virtual std::unique_ptr<SampleOutput> create(const std::filesystem::path& path, const ImageShape& shape,
+                                               const std::string& colour_space) = 0;
+  /// Extensions of files that can be read, in lower case with the dot.
+  virtual std::vector<std::string> extensions() = 0;
+};
+
+/// OpenImageIO, as this program was linked: directly (linked_formats.cpp), or loaded when first asked for
+/// (loaded_formats.cpp). Throws Error when it cannot be loaded.
+AnyFormat& anyFormat();
+
+/// What the module exports; the library facezip holds it itself.
+extern "C" __attribute__((visibility("default"))) AnyFormat& facezipOpenImageIo();
+inline constexpr const char* kOpenImageIoEntry = "facezipOpenImageIo";
+
+}  // namespace facezip::image

@@ -1,0 +1,174 @@
+// oiio_file.cpp - images of every format that OpenImageIO knows. The one file of the library that sees OpenImageIO.
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "facezip/error.hpp"
+#include "image/image_format.hpp"
+
+namespace facezip::image {
+namespace fs = std::filesystem;
+namespace {
+
+OIIO::TypeDesc oiioType(SampleType type) {
+  switch (type) {
+    case SampleType::kUint8:
+      return OIIO::TypeDesc::UINT8;
+    case SampleType::kUint16:
+      return OIIO::TypeDesc::UINT16;
+    case SampleType::kFloat32:
+      break;
+  }
+  return OIIO::TypeDesc::FLOAT;
+}
+
+SampleType sampleType(const OIIO::TypeDesc& format) {
+  switch (format.basetype) {
+    case OIIO::TypeDesc::UINT8:
+      return SampleType::kUint8;
+    case OIIO::TypeDesc::UINT16:
+      return SampleType::kUint16;
+    default:
+      return SampleType::kFloat32;
+  }
+}
+
+/// OpenImageIO's text, without its line ends and never empty.
+std::string reason(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  while (!text.empty() && text.back() == ' ') text.pop_back();
+  return text.empty() ? "OpenImageIO gives no reason" : text;
+}
+
+std::unique_ptr<OIIO::ImageInput> openInput(const fs::path& path) {
+  OIIO::ImageSpec config;
+  // Package and capture images carry four independent channels; premultiplying by the fourth would destroy them.
+  config["oiio:UnassociatedAlpha"] = 1;
+  std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path.string(), &config);
+  if (!input) {
+    throw InputError({path.string(), "", "an image that OpenImageIO reads", reason(OIIO::geterror()),
+                      "export it again, as PNG, TIFF or EXR"});
+  }
+  return input;
+}
+
+class OiioInput : public SampleInput {
+ public:
+  explicit OiioInput(const fs::path& path) : path_(path), file_(openInput(path)) {
+    const OIIO::ImageSpec& spec = file_->spec();
+    shape_ = {spec.width, spec.height, spec.nchannels, sampleType(spec.format)};
+    if (spec.depth > 1 || spec.deep) {
+      throw InputError({path_.string(), "", "a flat two-dimensional image", "a volume or deep image", ""});
+    }
+  }
+
+  ImageShape shape() const override { return shape_; }
+
+  void readRows(int begin, int end, std::span<std::byte> out) override {
+    const OIIO::ImageSpec& spec = file_->spec();
+    if (spec.tile_width > 0) {
+      readTiledRows(begin, end, out);
+    } else if (!file_->read_scanlines(0, 0, spec.y + begin, spec.y + end, 0, 0, shape_.channels, oiioType(shape_.type),
+                                      out.data())) {
+      damaged(begin, end);
+    }
+  }
+
+ private:
+  void readTiledRows(int begin, int end, std::span<std::byte> out) {
+    const OIIO::ImageSpec& spec = file_->spec();
+    for (int row = begin; row < end; ++row) {
+      if (row < tile_rows_begin_ || row >= tile_rows_end_) {
+        const int tile_begin = row / spec.tile_height * spec.tile_height;
+        const int tile_end = std::min(tile_begin + spec.tile_height, shape_.height);
+        tile_rows_.resize(static_cast<std::size_t>(tile_end - tile_begin) * shape_.rowBytes());
+        if (!file_->read_tiles(0, 0, spec.x, spec.x + spec.width, spec.y + tile_begin, spec.y + tile_end, 0, 1, 0,
+                               shape_.channels, oiioType(shape_.type), tile_rows_.data())) {
+          damaged(tile_begin, tile_end);
+        }
+        tile_rows_begin_ = tile_begin;
+        tile_rows_end_ = tile_end;
+      }
+      const std::size_t row_bytes = shape_.rowBytes();
+      std::memcpy(out.data() + static_cast<std::size_t>(row - begin) * row_bytes,
+                  tile_rows_.data() + static_cast<std::size_t>(row - tile_rows_begin_) * row_bytes, row_bytes);
+    }
+  }
+
+  [[noreturn]] void damaged(int begin, int end) const {
+    throw InputError({path_.string(), fmt::format("rows {} to {}", begin, end - 1), "readable image data",
+                      reason(file_->geterror()), "the file is truncated or damaged: export it again"});
+  }
+
+  fs::path path_;
+  std::unique_ptr<OIIO::ImageInput> file_;
+  ImageShape shape_;
+  // The row of tiles that holds the last row asked for: bands need not end where tiles do.
+  std::vector<std::byte> tile_rows_;
+  int tile_rows_begin_ = 0;
+  int tile_rows_end_ = 0;
+};
+
+class OiioOutput : public SampleOutput {
+ public:
+  OiioOutput(const fs::path& path, const ImageShape& shape, const std::string& colour_space)
+      : path_(path), type_(oiioType(shape.type)), file_(OIIO::ImageOutput::create(path.string())) {
+    if (!file_) {
+      throw InputError({path_.string(), "", "an image file name that OpenImageIO can write",
+                        fmt::format("extension \"{}\"", path_.extension().string()), "use .png, .tif or .exr"});
+    }
+    OIIO::ImageSpec spec(shape.width, shape.height, shape.channels, type_);
+    spec.attribute("oiio:UnassociatedAlpha", 1);
+    if (!colour_space.empty()) spec.attribute("oiio:ColorSpace", colour_space);
+    // EXR headers get the time of writing unless one is given: the same input would give other bytes every second.
+    if (path_.extension() == ".exr") spec.attribute("DateTime", "1970:01:01 00:00:00");
+    errno = 0;
+    if (!file_->open(path_.string(), spec)) throw OutputError(path_, reason(file_->geterror()));
+  }
+
+  void writeRows(int first_row, int row_count, std::span<const std::byte> rows) override {
+    if (!file_->write_scanlines(first_row, first_row + row_count, 0, type_, rows.data())) fail();
+  }
+
+  void close() override {
+    if (!file_->close()) fail();
+  }
+
+ private:
+  [[noreturn]] void fail() const { throw OutputError(path_, reason(file_->geterror()), "is the disk full?"); }
+
+  fs::path path_;
+  OIIO::TypeDesc type_;
+  std::unique_ptr<OIIO::ImageOutput> file_;
+};
+
+class OpenImageIo : public AnyFormat {
+ public:
+  std::unique_ptr<SampleInput> open(const fs::path& path) override { return std::make_unique<OiioInput>(path); }
+
+  std::unique_ptr<SampleOutput> create(const fs::path& path, const ImageShape& shape,
+                                       const std::string& colour_space) override {
+    return std::make_unique<OiioOutput>(path, shape, colour_space);
+  }
+
+  std::vector<std::string> extensions() override {
+    std::vector<std::string> all;
+    for (const auto& [format, list] : OIIO::get_extension_map()) {
+      for (const std::string& extension : list) all.push_back("." + extension);
+    }
+    return all;
+  }
+};
+
+}  // namespace
+
+extern "C" AnyFormat& facezipOpenImageIo() {
+  static OpenImageIo formats;
+  return formats;
+}
+
+}  // namespace facezip::image

@@ -2,11 +2,11 @@
 include(CMakePackageConfigHelpers)
 set(FACEZIP_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/facezip)
 
-install(TARGETS facezip facezip_geometry EXPORT facezipTargets
+install(TARGETS facezip facezip_geometry facezip_runtime EXPORT facezipTargets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
   RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(DIRECTORY geometry/include/ host/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")
+install(DIRECTORY geometry/include/ host/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h")
 install(FILES ${PROJECT_BINARY_DIR}/host/include/facezip/version.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/facezip)
 install(EXPORT facezipTargets NAMESPACE facezip:: DESTINATION ${FACEZIP_CMAKE_DIR})
 

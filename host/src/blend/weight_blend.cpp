@@ -26,6 +26,10 @@ WeightMaps::WeightMaps(device::DeviceContext& context, WeightGrid grid, std::spa
   beta_ = context.allocate(expressions * sizeof(float), CL_MEM_READ_ONLY, "blendshape weights");
   encoding_ = context.allocate(2 * channels * sizeof(float), CL_MEM_READ_ONLY, "weight encoding");
   weights_ = context.allocate(grid_.blocks() * channels * 16 * sizeof(float), CL_MEM_READ_WRITE, "blended weights");
+  // Frames allocate nothing.
+  active_expressions_.reserve(expressions);
+  active_beta_.reserve(expressions);
+  decoding_.resize(2 * channels);
   kernel_.setArg(0, codes_);
   kernel_.setArg(1, active_);
   kernel_.setArg(2, beta_);
@@ -45,13 +49,14 @@ cl::Event WeightMaps::blend(std::span<const float> beta, int begin_row, int end_
     active_beta_.push_back(beta[n]);
     beta_sum += static_cast<double>(beta[n]);
   }
-  std::vector<float> encoding;
-  for (const double scale : grid_.scale) encoding.push_back(static_cast<float>(scale));
-  for (const double offset : grid_.offset) encoding.push_back(static_cast<float>(offset * beta_sum));
+  for (std::size_t i = 0; i < grid_.scale.size(); ++i) {
+    decoding_[i] = static_cast<float>(grid_.scale[i]);
+    decoding_[grid_.scale.size() + i] = static_cast<float>(grid_.offset[i] * beta_sum);
+  }
   context_.write(active_, active_expressions_.data(), active_expressions_.size() * sizeof(cl_int),
                  "expressions in use");
   context_.write(beta_, active_beta_.data(), active_beta_.size() * sizeof(float), "blendshape weights");
-  context_.write(encoding_, encoding.data(), encoding.size() * sizeof(float), "weight encoding");
+  context_.write(encoding_, decoding_.data(), decoding_.size() * sizeof(float), "weight encoding");
 
   const std::size_t columns = static_cast<std::size_t>(grid_.columns);
   const std::size_t first_block = static_cast<std::size_t>(begin_row) * columns / 16;

@@ -66,6 +66,7 @@ class WeightMaps {
   cl::Buffer weights_;
   std::vector<cl_int> active_expressions_;
   std::vector<float> active_beta_;
+  std::vector<float> decoding_;  // scale_i, then offset_i times the sum of beta
 };
 
 /// Throws InputError that names the expression (by index, or by `names` when given) whose weight is not finite, or

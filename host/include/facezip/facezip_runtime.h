@@ -1,0 +1,123 @@
+/* facezip_runtime.h - loads packages and blends frames, from C and from whatever calls C (engines, Python's ctypes).
+ *
+ * Frames are those of facezip's C++ Blender, bit for bit. No C++ type and no exception crosses this interface: calls
+ * return a status, and facezip_last_error() says in words what went wrong.
+ *
+ * Threads    A facezip_package may be used by one thread at a time, any thread; different ones by different threads at
+ *            once. The functions without a facezip_package may be called at any time.
+ * Memory     All memory of textures and weights, on host and device, is taken in facezip_load(). A frame takes none.
+ * Versions   Functions are added, not changed or removed, as long as FACEZIP_RUNTIME_ABI stays the same; structures
+ *            grow at their end and carry their size. The library's soname ends in FACEZIP_RUNTIME_ABI.
+ */
+#ifndef FACEZIP_RUNTIME_H
+#define FACEZIP_RUNTIME_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(__GNUC__)
+#define FACEZIP_RUNTIME_API __attribute__((visibility("default")))
+#else
+#define FACEZIP_RUNTIME_API
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Of the interface in this header; facezip_runtime_abi() is that of the library that was loaded. */
+#define FACEZIP_RUNTIME_ABI 1
+
+/** What a call returns; those that are not FACEZIP_OK leave text for facezip_last_error(). */
+typedef enum facezip_status {
+  FACEZIP_OK = 0,
+  FACEZIP_ERROR_ARGUMENT =
+      1,                    /**< a null pointer, an index out of range, a size that does not fit, a weight not finite */
+  FACEZIP_ERROR_INPUT = 3,  /**< the package is missing, damaged or of a version that is not known */
+  FACEZIP_ERROR_DEVICE = 4, /**< no OpenCL device answers to the selector, or it failed, or has not the memory */
+  FACEZIP_ERROR_MEMORY = 5, /**< the host has not the memory */
+  FACEZIP_ERROR_OTHER = 6   /**< a failure that facezip does not understand */
+} facezip_status;
+
+/** How a sample of a frame is stored. */
+typedef enum facezip_sample_type {
+  FACEZIP_UINT8 = 0,
+  FACEZIP_UINT16 = 1, /**< of the host's byte order */
+  FACEZIP_FLOAT32 = 2
+} facezip_sample_type;
+
+/** A package whose textures lie on an OpenCL device, and the weights that frames are blended with. */
+typedef struct facezip_package facezip_package;
+
+/** One map of a package (albedo, normal, ...). */
+typedef struct facezip_map_info {
+  size_t struct_size;       /**< to be set by the caller: sizeof(facezip_map_info) */
+  const char* name;         /**< lives as long as the package, as colour_space does */
+  const char* colour_space; /**< "sRGB", "linear" or "" (not said) */
+  int32_t width;            /**< texels */
+  int32_t height;           /**< texels; row 0 is v = 1 */
+  int32_t channels;         /**< 1 to 4, interleaved */
+  int32_t sample_type;      /**< facezip_sample_type */
+  size_t frame_bytes;       /**< height x width x channels samples, no padding */
+} facezip_map_info;
+
+/** FACEZIP_RUNTIME_ABI of the library. */
+FACEZIP_RUNTIME_API int32_t facezip_runtime_abi(void);
+
+/** The library's version, "0.1.0". */
+FACEZIP_RUNTIME_API const char* facezip_runtime_version(void);
+
+/** One line about the last call of this thread that failed; "" before the first. Valid until the next one fails. */
+FACEZIP_RUNTIME_API const char* facezip_last_error(void);
+
+/** Loads every texel of a package onto a device; weights are all zero. Takes seconds for large packages, and a second
+ *  more the first time on a device, when kernels are compiled.
+ *  directory  of the package, UTF-8
+ *  device     selector as `facezip --device` takes it: "auto", "gpu", "cpu", "PLATFORM:DEVICE", part of a name; null:
+ * auto package    set to the package, to be given to facezip_free(); to null on failure
+ */
+FACEZIP_RUNTIME_API facezip_status facezip_load(const char* directory, const char* device, facezip_package** package);
+
+/** Frees a package; null is ignored. */
+FACEZIP_RUNTIME_API void facezip_free(facezip_package* package);
+
+/** N, the number of weights; 0 for null. */
+FACEZIP_RUNTIME_API int32_t facezip_expression_count(const facezip_package* package);
+
+/** Name of expression 0 .. N - 1; null out of range. Lives as long as the package. */
+FACEZIP_RUNTIME_API const char* facezip_expression_name(const facezip_package* package, int32_t expression);
+
+/** Index of the expression of that name, -1 if there is none. */
+FACEZIP_RUNTIME_API int32_t facezip_find_expression(const facezip_package* package, const char* name);
+
+/** Number of maps; 0 for null. */
+FACEZIP_RUNTIME_API int32_t facezip_map_count(const facezip_package* package);
+
+/** Index of the map of that name, -1 if there is none. */
+FACEZIP_RUNTIME_API int32_t facezip_find_map(const facezip_package* package, const char* name);
+
+/** Describes a map.  info  with struct_size set */
+FACEZIP_RUNTIME_API facezip_status facezip_get_map_info(const facezip_package* package, int32_t map,
+                                                        facezip_map_info* info);
+
+/** Sets the weights that the following frames, of every map, are blended with. Costs a pass over the weight maps of the
+ *  expressions whose weight is not zero. On failure the weights stay as they were.
+ *  weights  count finite values of any sign, in the order of the expressions
+ *  count    N
+ */
+FACEZIP_RUNTIME_API facezip_status facezip_set_weights(facezip_package* package, const float* weights, size_t count);
+
+/** Blends a frame of one map into memory of the caller, and waits for it:
+ *      frame = neutral + sum_i D_i * sum_n weight_n W_in     (FaceZip, Eq. 8)
+ *  Integers are rounded and clamped, floats are neither. With all weights zero the frame is the neutral, bit for bit.
+ *  frame  frame_bytes bytes. A CPU device writes straight into it when it is aligned to 64 bytes, the width is a
+ *         multiple of 16 and the height of 8; otherwise the frame is copied once
+ *  bytes  size of `frame`, which must be frame_bytes
+ */
+FACEZIP_RUNTIME_API facezip_status facezip_blend(facezip_package* package, int32_t map, void* frame, size_t bytes);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,13 @@
+# Fails unless LIBRARY exports the functions that HEADER declares, and nothing else.
+execute_process(COMMAND ${NM} --dynamic --defined-only ${LIBRARY} OUTPUT_VARIABLE lines COMMAND_ERROR_IS_FATAL ANY)
+string(REGEX MATCHALL "[0-9a-f]+ [TWVDBRu] [^\n@]+" symbols "${lines}")
+list(TRANSFORM symbols REPLACE "^[0-9a-f]+ . " "")
+file(READ ${HEADER} text)
+string(REGEX MATCHALL "FACEZIP_RUNTIME_API [^(]*[ *]facezip_[a-z_]+\\(" declared "${text}")
+list(TRANSFORM declared REPLACE ".*[ *](facezip_[a-z_]+)\\($" "\\1")
+list(SORT symbols)
+list(SORT declared)
+list(LENGTH declared count)
+if(count EQUAL 0 OR NOT symbols STREQUAL declared)
+  message(FATAL_ERROR "exported: ${symbols}\ndeclared: ${declared}")
+endif()

@@ -16,7 +16,7 @@ run(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
 run(${WORK_DIR}/prefix/bin/facezip synth --output ${WORK_DIR}/capture --resolution 128 --expressions 3 --maps albedo)
 run(${WORK_DIR}/build/consumer ${WORK_DIR}/capture ${WORK_DIR}/package)
 # The installed command finds its modules: OpenImageIO for TIFF, pictures.
-run(${WORK_DIR}/prefix/bin/facezip blend ${WORK_DIR}/package --weights "" --output ${WORK_DIR}/frame.tif)
+run(${WORK_DIR}/prefix/bin/facezip blend ${WORK_DIR}/package --weights jaw_open_wide=1 --output ${WORK_DIR}/frame.tif)
 run(${WORK_DIR}/prefix/bin/facezip evaluate ${WORK_DIR}/capture ${WORK_DIR}/package --baselines none --blends 0
     --picture ${WORK_DIR}/errors.png)
 run(${WORK_DIR}/build/runtime ${WORK_DIR}/package)

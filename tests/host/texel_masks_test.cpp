@@ -2,12 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+#include <utility>
+
 #include "facezip/geometry/surface_sampling.hpp"
 #include "raster/weight_grid.hpp"
 #include "small_capture.hpp"
 
 namespace facezip {
 namespace {
+
+constexpr auto kWithGutter = raster::TexelMasks::Texels::kCoveredAndGutter;
 
 /// A patch with masks about 5 cm apart.
 struct MaskedPatch {
@@ -23,7 +28,7 @@ TEST(TexelMasks, SumToOneOnEveryMaskedTexelAndNowhereElse) {
   const MaskedPatch patch;
   const raster::UvRaster raster(patch.mesh, patch.triangles, 93, 61, 7);
   const auto samples = raster.rows(0, 61);
-  const compress::TileMasks tiles = patch.texels.tiles(raster, 0, 61);
+  const compress::TileMasks tiles = patch.texels.tiles(raster, 0, 61, kWithGutter);
   std::vector<float> sums(static_cast<std::size_t>(96) * 64, 0.0f);
   for (std::size_t t = 0; t < tiles.tiles.size(); ++t) {
     for (int e = tiles.mask_begin[t]; e < tiles.mask_begin[t + 1]; ++e) {
@@ -52,19 +57,36 @@ TEST(TexelMasks, CountOnlyCoveredTexels) {
   const auto count = [](const compress::TileMasks& tiles) {
     return std::count(tiles.texel_weights.begin(), tiles.texel_weights.end(), 1.0f);
   };
-  EXPECT_EQ(count(patch.texels.tiles(raster, 0, 61)), covered);
+  EXPECT_EQ(count(patch.texels.tiles(raster, 0, 61, kWithGutter)), covered);
+  EXPECT_EQ(count(patch.texels.tiles(raster, 0, 61, raster::TexelMasks::Texels::kCovered)), covered);
   EXPECT_EQ(count(raster::coverageTiles(raster, 0, 61)), covered);
 }
 
-TEST(TexelMasks, OverlapsAreThePairsThatShareATile) {
-  compress::TileMasks tiles;
-  tiles.tiles = {{0, 0}, {1, 0}};
-  tiles.mask_begin = {0, 3, 4};
-  tiles.mask_index = {0, 2, 3, 1};
-  std::vector<bool> overlaps(16, false);
-  raster::markOverlaps(tiles, 4, overlaps);
-  const std::vector<compress::MaskPair> expected = {{0, 2}, {0, 3}, {2, 3}};
-  EXPECT_EQ(raster::overlappingPairs(overlaps, 4), expected);
+TEST(TexelMasks, OverlapsAreThePairsThatShareATexel) {
+  const MaskedPatch patch;
+  // So fine that every triangle has texels inside.
+  const raster::UvRaster raster(patch.mesh, patch.triangles, 256, 256, 0);
+  const compress::TileMasks tiles = patch.texels.tiles(raster, 0, 256, raster::TexelMasks::Texels::kCovered);
+  std::set<std::pair<int, int>> expected;
+  for (std::size_t t = 0; t < tiles.tiles.size(); ++t) {
+    for (int a = tiles.mask_begin[t]; a < tiles.mask_begin[t + 1]; ++a) {
+      for (int b = a + 1; b < tiles.mask_begin[t + 1]; ++b) {
+        for (int p = 0; p < compress::kTileTexels; ++p) {
+          const auto weight = [&](int e) {
+            return tiles.mask_weights[static_cast<std::size_t>(e) * 256 + static_cast<std::size_t>(p)];
+          };
+          if (weight(a) * weight(b) == 0.0f) continue;
+          expected.emplace(tiles.mask_index[static_cast<std::size_t>(a)],
+                           tiles.mask_index[static_cast<std::size_t>(b)]);
+        }
+      }
+    }
+  }
+  std::set<std::pair<int, int>> got;
+  for (const auto& [k, l] : patch.texels.overlappingPairs()) got.emplace(k, l);
+  EXPECT_EQ(got, expected);
+  const auto masks = static_cast<std::size_t>(patch.masks.mask_count);
+  EXPECT_LT(got.size(), masks * (masks - 1) / 2);
 }
 
 TEST(WeightGrid, CellsSumToOneEverywhere) {

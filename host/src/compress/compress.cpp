@@ -337,32 +337,17 @@ class Compression {
     return tiles;
   }
 
-  GramSlots gramSlots() const {
-    std::vector<bool> overlaps(static_cast<std::size_t>(report_.masks) * static_cast<std::size_t>(report_.masks),
-                               false);
-    const raster::UvRaster* last = nullptr;
-    for (const OpenMap& map : maps_.maps) {
-      if (map.raster.get() == last) continue;
-      last = map.raster.get();
-      for (int begin = 0; begin < last->height(); begin += report_.band_rows) {
-        const int end = std::min(begin + report_.band_rows, last->height());
-        raster::markOverlaps(texel_masks_->tiles(*last, begin, end), report_.masks, overlaps);
-      }
-    }
-    return {report_.masks, raster::overlappingPairs(overlaps, report_.masks)};
-  }
-
   // Pass 1: all that the search needs of the texels (Eq. 2 to 4).
   void accumulateGrams() {
-    const GramSlots slots = gramSlots();
-    clock_.book("overlaps");
+    const GramSlots slots{report_.masks, texel_masks_->overlappingPairs()};
     covered_texels_.assign(maps_.maps.size(), 0);
     for (WeightGroup& group : groups_) {
       GramAccumulator accumulator(context_, slots, expressions());
       for (OpenMap* map : group.maps) {
         std::uint64_t covered = 0;
         const auto make_tiles = [&](int begin, int end) {
-          return weighed(texel_masks_->tiles(*map->raster, begin, end), *map, begin);
+          return weighed(texel_masks_->tiles(*map->raster, begin, end, raster::TexelMasks::Texels::kCovered), *map,
+                         begin);
         };
         forEachBand(*map, "Gram matrices", make_tiles, [&](const MapBand& band) {
           accumulator.add(band.tiles, band.differences, band.shape, map->fit_weight);
@@ -387,7 +372,7 @@ class Compression {
       if (!rates_->sawNothing(m)) continue;
       rates_->startOver(m);
       OpenMap& map = maps_.maps[m];
-      const auto make_tiles = [&](int begin, int end) { return texel_masks_->tiles(*map.raster, begin, end); };
+      const auto make_tiles = [&](int begin, int end) { return raster::coverageTiles(*map.raster, begin, end); };
       forEachBand(map, "estimating", make_tiles, [&](const MapBand& band) { rates_->addBand(m, band); });
     }
   }

@@ -30,7 +30,7 @@ class ClusterTextures : public TextureSource {
                   const TextureCoefficients& coefficients)
       : masks_(masks), textures_(context, coefficients) {}
   TileMasks tiles(const OpenMap& map, int begin, int end) const override {
-    return masks_.tiles(*map.raster, begin, end);
+    return masks_.tiles(*map.raster, begin, end, raster::TexelMasks::Texels::kCoveredAndGutter);
   }
   const cl::Buffer& compute(const OpenMap&, const MapBand& band) override {
     return textures_.compute(band.tiles, band.differences, band.shape);

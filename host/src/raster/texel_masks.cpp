@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <set>
+#include <utility>
 
 namespace facezip::raster {
 namespace {
@@ -91,8 +93,9 @@ void TexelMasks::addTile(const std::vector<TexelSample>& samples, int width, int
   out.texel_weights.insert(out.texel_weights.end(), texel_weights.begin(), texel_weights.end());
 }
 
-compress::TileMasks TexelMasks::tiles(const UvRaster& raster, int begin, int end) const {
-  const std::vector<TexelSample> samples = raster.rows(begin, end);
+compress::TileMasks TexelMasks::tiles(const UvRaster& raster, int begin, int end, Texels texels) const {
+  const std::vector<TexelSample> samples =
+      texels == Texels::kCovered ? raster.coveredRows(begin, end) : raster.rows(begin, end);
   const int rows = end - begin;
   const int tile_rows = (rows + kTileSide - 1) / kTileSide;
   const int tile_columns = (raster.width() + kTileSide - 1) / kTileSide;
@@ -107,6 +110,27 @@ compress::TileMasks TexelMasks::tiles(const UvRaster& raster, int begin, int end
   whole.mask_begin.push_back(0);
   for (const TileMasks& part : parts) append(whole, part);
   return whole;
+}
+
+std::vector<compress::MaskPair> TexelMasks::overlappingPairs() const {
+  std::set<std::pair<int, int>> pairs;
+  std::vector<int> active;
+  for (const auto& triangle : region_.triangles.rowwise()) {
+    active.clear();
+    for (const int vertex : triangle) {
+      const auto entries = masks_.mask_index.begin();
+      active.insert(active.end(), entries + masks_.row_begin[static_cast<std::size_t>(vertex)],
+                    entries + masks_.row_begin[static_cast<std::size_t>(vertex) + 1]);
+    }
+    std::sort(active.begin(), active.end());
+    active.erase(std::unique(active.begin(), active.end()), active.end());
+    for (std::size_t a = 0; a < active.size(); ++a) {
+      for (std::size_t b = a + 1; b < active.size(); ++b) pairs.emplace(active[a], active[b]);
+    }
+  }
+  std::vector<compress::MaskPair> result;
+  for (const auto& [k, l] : pairs) result.push_back({k, l});
+  return result;
 }
 
 namespace {
@@ -165,31 +189,6 @@ compress::TileMasks activeTiles(const UvRaster& raster, int begin, int end) {
                 out.texel_weights.insert(out.texel_weights.end(), covered.begin(), covered.end());
               });
   return out;
-}
-
-void markOverlaps(const compress::TileMasks& tiles, int mask_count, std::vector<bool>& overlaps) {
-  for (std::size_t t = 0; t < tiles.tiles.size(); ++t) {
-    for (int a = tiles.mask_begin[t]; a < tiles.mask_begin[t + 1]; ++a) {
-      for (int b = a + 1; b < tiles.mask_begin[t + 1]; ++b) {
-        const int k = tiles.mask_index[static_cast<std::size_t>(a)];
-        const int l = tiles.mask_index[static_cast<std::size_t>(b)];
-        overlaps[static_cast<std::size_t>(k) * static_cast<std::size_t>(mask_count) + static_cast<std::size_t>(l)] =
-            true;
-      }
-    }
-  }
-}
-
-std::vector<compress::MaskPair> overlappingPairs(const std::vector<bool>& overlaps, int mask_count) {
-  std::vector<compress::MaskPair> pairs;
-  for (int k = 0; k < mask_count; ++k) {
-    for (int l = k + 1; l < mask_count; ++l) {
-      if (overlaps[static_cast<std::size_t>(k) * static_cast<std::size_t>(mask_count) + static_cast<std::size_t>(l)]) {
-        pairs.push_back({k, l});
-      }
-    }
-  }
-  return pairs;
 }
 
 }  // namespace facezip::raster

@@ -23,9 +23,14 @@ class TexelMasks {
 
   int maskCount() const { return masks_.mask_count; }
 
+  enum class Texels { kCovered, kCoveredAndGutter };
   /// Cuts rows [begin, end) of the raster into tiles and gives each the masks that are above zero at one of its texels.
-  /// Tiles with neither covered nor gutter texels are left out.
-  compress::TileMasks tiles(const UvRaster& raster, int begin, int end) const;
+  /// Tiles without such texels are left out; masks are 0 at all others.
+  compress::TileMasks tiles(const UvRaster& raster, int begin, int end, Texels texels) const;
+
+  /// Pairs of masks that are both above zero somewhere inside a triangle, rising by (k, l): of all others the products
+  /// vanish at every texel.
+  std::vector<compress::MaskPair> overlappingPairs() const;
 
   /// Adds the masks of `sample`, times `weight`, to accumulator[mask] (K floats); appends masks met for the first time
   /// (those at 0 before) to `touched`.
@@ -48,11 +53,5 @@ compress::TileMasks coverageTiles(const UvRaster& raster, int begin, int end);
 /// The tiles of rows [begin, end) that hold covered or gutter texels, each with one mask (index 0): 1 at those texels,
 /// 0 elsewhere. Texel weights are 1 at the covered ones.
 compress::TileMasks activeTiles(const UvRaster& raster, int begin, int end);
-
-/// Adds the pairs of masks that share a tile to `overlaps` (K x K, upper triangle).
-void markOverlaps(const compress::TileMasks& tiles, int mask_count, std::vector<bool>& overlaps);
-
-/// The marked pairs, rising by (k, l).
-std::vector<compress::MaskPair> overlappingPairs(const std::vector<bool>& overlaps, int mask_count);
 
 }  // namespace facezip::raster

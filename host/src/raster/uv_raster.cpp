@@ -1,11 +1,10 @@
 #include "raster/uv_raster.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
+
+#include "raster/gutter.hpp"
 
 namespace facezip::raster {
 namespace {
@@ -71,46 +70,6 @@ void UvRaster::fillTriangle(const UvTriangle& t, int begin, int end, std::vector
   }
 }
 
-void UvRaster::fillGutterRow(int row, int begin, const std::vector<TexelSample>& covered, int covered_begin,
-                             int covered_end, std::vector<TexelSample>& samples) const {
-  const auto at = [&](int x, int y) -> const TexelSample& {
-    return covered[static_cast<std::size_t>(y - covered_begin) * static_cast<std::size_t>(width_) +
-                   static_cast<std::size_t>(x)];
-  };
-  // Horizontal distance to the nearest covered texel, per row of the window; then the best row by Pythagoras.
-  const int window_begin = std::max(covered_begin, row - gutter_);
-  const int window_end = std::min(covered_end, row + gutter_ + 1);
-  std::vector<int> best_distance2(static_cast<std::size_t>(width_), gutter_ * gutter_ + 1);
-  std::vector<const TexelSample*> best(static_cast<std::size_t>(width_), nullptr);
-  std::vector<int> nearest(static_cast<std::size_t>(width_));
-  for (int y = window_begin; y < window_end; ++y) {
-    int last = std::numeric_limits<int>::min() / 2;
-    for (int x = 0; x < width_; ++x) {
-      if (at(x, y).kind == TexelSample::Kind::kCovered) last = x;
-      nearest[static_cast<std::size_t>(x)] = last;
-    }
-    int next = std::numeric_limits<int>::max() / 2;
-    for (int x = width_ - 1; x >= 0; --x) {
-      if (at(x, y).kind == TexelSample::Kind::kCovered) next = x;
-      const int left = nearest[static_cast<std::size_t>(x)];
-      const int column = (next - x < x - left) ? next : left;
-      const int dx = std::abs(column - x);
-      if (dx > gutter_) continue;
-      const int distance2 = dx * dx + (y - row) * (y - row);
-      if (distance2 >= best_distance2[static_cast<std::size_t>(x)]) continue;
-      best_distance2[static_cast<std::size_t>(x)] = distance2;
-      best[static_cast<std::size_t>(x)] = &at(column, y);
-    }
-  }
-  for (int x = 0; x < width_; ++x) {
-    TexelSample& sample =
-        samples[static_cast<std::size_t>(row - begin) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
-    const TexelSample* source = best[static_cast<std::size_t>(x)];
-    if (sample.kind != TexelSample::Kind::kEmpty || source == nullptr) continue;
-    sample = {source->triangle, source->b0, source->b1, TexelSample::Kind::kGutter};
-  }
-}
-
 std::vector<TexelSample> UvRaster::coveredRows(int begin, int end) const {
   std::vector<TexelSample> samples(static_cast<std::size_t>(end - begin) * static_cast<std::size_t>(width_));
   const auto first = std::lower_bound(first_row_.begin(), first_row_.end(), begin - tallest_);
@@ -129,10 +88,7 @@ std::vector<TexelSample> UvRaster::rows(int begin, int end) const {
   const std::vector<TexelSample> covered = coveredRows(covered_begin, covered_end);
   const auto offset = [&](int row) { return static_cast<std::ptrdiff_t>(row - covered_begin) * width_; };
   std::vector<TexelSample> samples(covered.begin() + offset(begin), covered.begin() + offset(end));
-  if (gutter_ > 0) {
-    tbb::parallel_for(begin, end,
-                      [&](int row) { fillGutterRow(row, begin, covered, covered_begin, covered_end, samples); });
-  }
+  fillGutter(covered, width_, covered_begin, covered_end, begin, end, gutter_, samples);
   return samples;
 }
 

@@ -55,8 +55,6 @@ class UvRaster {
     bool in_region;
   };
   void fillTriangle(const UvTriangle& triangle, int begin, int end, std::vector<TexelSample>& samples) const;
-  void fillGutterRow(int row, int begin, const std::vector<TexelSample>& covered, int covered_begin, int covered_end,
-                     std::vector<TexelSample>& samples) const;
 
   int width_;
   int height_;

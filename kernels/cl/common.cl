@@ -33,6 +33,9 @@ inline float sum_of_16(const float16 value) {
 #define PAIRS (TEXTURES * (TEXTURES + 1) / 2)
 #define BLOCKS_END ((4 * PAIRS + 15) / 16 * 16)
 #define ENTRIES (BLOCKS_END + TEXTURES * EXPRESSION_LANES)
+// The same of a half cell (half_cell_fit.cl): one block, then the right-hand sides.
+#define SIDES_BEGIN ((PAIRS + 15) / 16 * 16)
+#define HALF_ENTRIES (SIDES_BEGIN + TEXTURES * EXPRESSION_LANES)
 #endif
 
 #ifdef WEIGHT_SCALE

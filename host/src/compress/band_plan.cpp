@@ -81,8 +81,8 @@ int planBandRows(const BandCost& cost, int height, std::uint64_t memory_bytes, s
   return static_cast<int>(std::clamp<std::uint64_t>(rows / kTileSide * kTileSide, kTileSide, needed));
 }
 
-int planWindowRows(std::span<OpenMap* const> maps, const WeightSpace& space, std::uint64_t memory_bytes,
-                   std::uint64_t resident_bytes, const DeviceInfo& device) {
+int planWindowRows(std::span<OpenMap* const> maps, const WeightSpace& space, bool half_cells,
+                   std::uint64_t memory_bytes, std::uint64_t resident_bytes, const DeviceInfo& device) {
   BandCost cost;  // per row of the finest map
   const OpenMap* finest = maps.front();
   for (const OpenMap* map : maps) {
@@ -96,6 +96,7 @@ int planWindowRows(std::span<OpenMap* const> maps, const WeightSpace& space, std
     cost.largest_buffer_per_row =
         std::max(cost.largest_buffer_per_row, one.largest_buffer_per_row * scale / finest_scale);
   }
+  if (half_cells) cost.per_row += HalfCells::bytesOfCellRow(space) / finest_scale;
   const std::uint64_t halo = 2 * static_cast<std::uint64_t>(windowHalo(finest->weight_scale)) * cost.per_row;
   const int rows = planBandRows(cost, finest->samples->shape().height, memory_bytes, resident_bytes + halo, device);
   const int step = windowRowStep(maps);

@@ -52,7 +52,7 @@ struct WeightGroup {
   EncodedWeights weights;                         ///< that are written
   std::vector<std::vector<TextureRange>> ranges;  ///< of every map's difference textures
   std::vector<double> errors;                     ///< of every map: squared error before rounding, (1/255)^2
-  double start_error = 0.0;                       ///< of all maps, with the paper's weights, times their fit weights
+  double start_error = 0.0;                       ///< of all maps, with the start's weights, as the refinement saw it
 };
 
 void requireSaneOptions(const CompressOptions& options) {
@@ -298,7 +298,8 @@ class Compression {
 
   /// The same of the windows of the refinement, in rows of cells.
   int plannedWindowRows(const WeightGroup& group) const {
-    return planWindowRows(group.maps, weightSpace(), options_.memory_bytes, residentBytes(), context_.info());
+    return planWindowRows(group.maps, weightSpace(), sweepsHalfCells(context_, group.maps), options_.memory_bytes,
+                          residentBytes(), context_.info());
   }
 
   /// Later passes read decoded samples from a scratch file beside the package where the disk has room for it.
@@ -452,10 +453,7 @@ class Compression {
     Refinement refined = refine(context_, problem, refinement, progress_);
     group.ranges = std::move(refined.ranges);
     group.errors = std::move(refined.end_errors);
-    group.start_error = 0.0;
-    for (std::size_t m = 0; m < group.maps.size(); ++m) {
-      group.start_error += group.maps[m]->fit_weight * refined.start_errors[m];
-    }
+    group.start_error = refined.errors.front();
     if (most_sweeps > 0) {
       report_.refinement_errors = std::move(refined.errors);
       group.weights = refined.weights.encode(grid_.covered, kClippedWeights);
@@ -497,9 +495,10 @@ class Compression {
     report_.refinement_errors.clear();
     for (WeightGroup& group : groups_) solveFitted(group, sweeps);
     const std::vector<double> refined_errors = write();
+    constexpr double kSuspicious = 0.5;          // of the start's error; refinement commonly leaves a third
     std::map<std::size_t, WeightGroup> refined;  // that may be worse than the start
     for (std::size_t g = 0; sweeps > 0 && g < groups_.size(); ++g) {
-      if (refined_errors[g] > groups_[g].start_error) refined[g] = groups_[g];
+      if (refined_errors[g] > kSuspicious * groups_[g].start_error) refined[g] = groups_[g];
     }
     if (refined.empty()) return;
     for (const auto& [g, group] : refined) solveFitted(groups_[g], 0);

@@ -70,6 +70,7 @@ class MapWindow {
     return sum;
   }
 
+  void addTo(HalfCells& halves) { halves.add(band(), tile_at_.buffer(), fitWeight()); }
   void addTo(WeightSystem& system, const WeightWindow& weights) {
     system.add(band(), tile_at_.buffer(), fit_.textures(), weights, fitWeight());
   }
@@ -106,12 +107,13 @@ class Refiner {
         options_(options),
         window_(context, problem.space),
         system_(context, problem.space),
+        halves_(context, problem.space),
+        by_halves_(sweepsHalfCells(context, problem.maps)),
         result_(problem.space) {
     assert(problem.cell_energy > 0.0 && problem.window_rows > 0);
     for (OpenMap* map : problem.maps) maps_.push_back(std::make_unique<MapWindow>(context, *map, problem.space));
     result_.ranges.resize(maps_.size());
     tile_ranges_.resize(maps_.size());
-    result_.start_errors.resize(maps_.size(), 0.0);
     result_.end_errors.resize(maps_.size(), 0.0);
     result_.errors.assign(static_cast<std::size_t>(options.most_sweeps) + 1, 0.0);
   }
@@ -153,10 +155,13 @@ class Refiner {
     result_.weights.load(rows.begin, begin,
                          std::span(weights).first(static_cast<std::size_t>(begin - rows.begin) * row_floats));
     window_.set(rows, weights, start);
+    if (!by_halves_ || options_.most_sweeps == 0) return;
+    halves_.moveTo(rows);
+    for (const auto& map : maps_) map->addTo(halves_);
   }
 
-  /// Fits the difference textures; returns the squared error, texel and metric weights in it.
-  double fit() {
+  /// Fits the difference textures to every texel; returns the squared error, texel and metric weights in it.
+  double fitTexels() {
     const float ridge = ridgeOf(options_, problem_.space);
     for (const auto& map : maps_) map->fit(window_, ridge);
     double error = 0.0;
@@ -164,9 +169,15 @@ class Refiner {
     return error;
   }
 
+  /// The same on what the sweeps see of the textures.
+  double fit() {
+    if (!by_halves_ || options_.most_sweeps == 0) return fitTexels();
+    halves_.fit(window_, ridgeOf(options_, problem_.space));
+    return halves_.error();
+  }
+
   void sweep(Progress& progress) {
     double error = fit();
-    for (std::size_t m = 0; m < maps_.size(); ++m) result_.start_errors[m] += maps_[m]->error().plain;
     result_.errors[0] += error;
     bool done = false;
     for (int sweep = 1; sweep <= options_.most_sweeps; ++sweep) {
@@ -179,11 +190,32 @@ class Refiner {
       }
       result_.errors[static_cast<std::size_t>(sweep)] += error;
     }
+    if (by_halves_ && options_.most_sweeps > 0) turnOnTexels();
+  }
+
+  /// What half cells could not see: the weights' slope inside them.
+  void turnOnTexels() {
+    fitTexels();
+    addTexels();
+    relax();
+    fitTexels();
   }
 
   void solveWeights() {
+    if (by_halves_) {
+      system_.gather(halves_, window_);
+    } else {
+      addTexels();
+    }
+    relax();
+  }
+
+  void addTexels() {
     system_.clear();
     for (const auto& map : maps_) map->addTo(system_, window_);
+  }
+
+  void relax() {
     system_.relax(window_, options_.relax_sweeps, static_cast<float>(options_.smoothness * problem_.cell_energy),
                   static_cast<float>(options_.trust * problem_.cell_energy));
   }
@@ -208,12 +240,19 @@ class Refiner {
   const RefinementOptions& options_;
   WeightWindow window_;
   WeightSystem system_;
+  HalfCells halves_;
+  bool by_halves_;
   std::vector<std::unique_ptr<MapWindow>> maps_;
   std::vector<std::vector<TextureRange>> tile_ranges_;  ///< of every map, [tile][plane]
   Refinement result_;
 };
 
 }  // namespace
+
+bool sweepsHalfCells(const device::DeviceContext& context, std::span<OpenMap* const> maps) {
+  return context.resolve(device::KernelVariant::kAuto) == device::KernelVariant::kCpu &&
+         std::ranges::all_of(maps, [](const OpenMap* map) { return HalfCells::canHold(map->weight_scale); });
+}
 
 Refinement refine(device::DeviceContext& context, const RefinementProblem& problem, const RefinementOptions& options,
                   Progress& progress) {

@@ -4,7 +4,8 @@
 // over D (difference_fit.hpp) and W (weight_system.hpp) by turns, starting from the paper's weights (FaceZip, Eq. 6). A
 // cell touches only the texels up to the next cells' centres, so the turns are taken window by window: one pass over
 // the texels serves all sweeps, and memory does not grow with the height of the image. Rows of cells above the window
-// are done and stay, those below are still where they started; every step lowers the objective of the whole image.
+// are done and stay, those below are still where they started. The sweeps are made on half cells where those fit
+// (half_cells.hpp), with one more turn on the texels; every step on texels lowers the objective of the whole image.
 #pragma once
 
 #include <functional>
@@ -46,14 +47,17 @@ struct Refinement {
   GridWeights weights;
   /// Of every map: reach of the difference textures that suit `weights`, entry texture * channels + channel.
   std::vector<std::vector<TextureRange>> ranges;
-  std::vector<double> errors;  ///< squared error, texel and metric weights in it, at the start and after each sweep
-  std::vector<double> start_errors;  ///< of every map: plain squared error at the start, in (1/255)^2
-  std::vector<double> end_errors;    ///< and with `weights`, before anything is rounded
+  std::vector<double> errors;      ///< squared error, texel and metric weights in it, at the start and after each sweep
+  std::vector<double> end_errors;  ///< of every map: plain squared error with `weights`, before anything is rounded
 };
 
 /// Refines. Throws DeviceError, InputError, OutputError, Cancelled.
 Refinement refine(device::DeviceContext& context, const RefinementProblem& problem, const RefinementOptions& options,
                   Progress& progress);
+
+/// True if the sweeps are made on half cells (half_cells.hpp) rather than texels: where they fit all maps' weight
+/// scales, on CPUs.
+bool sweepsHalfCells(const device::DeviceContext& context, std::span<OpenMap* const> maps);
 
 /// The ridge of difference_fit for N expressions and C textures.
 float ridgeOf(const RefinementOptions& options, const WeightSpace& space);

@@ -90,6 +90,26 @@ void WeightSystem::gather(const GridBand& band, const cl::Buffer& tile_at, const
   empty_ = false;
 }
 
+void WeightSystem::gather(const HalfCells& halves, const WeightWindow& window) {
+  const WindowRows& rows = window.rows();
+  system_.reserve(static_cast<std::size_t>(rows.count() * space_.columns) * space_.systemEntries() * sizeof(float));
+  cl::Kernel kernel =
+      context_.kernel("half_cell_gather.cl", "half_cell_gather",
+                      fmt::format("-D TEXTURES={} -D EXPRESSION_LANES={}", space_.textures, space_.lanes()));
+  kernel.setArg(0, halves.equations());
+  kernel.setArg(1, system_.buffer());
+  kernel.setArg(2, static_cast<cl_int>(halves.firstHalfRow()));
+  kernel.setArg(3, static_cast<cl_int>(halves.halfRows()));
+  kernel.setArg(4, static_cast<cl_int>(rows.begin));
+  kernel.setArg(5, static_cast<cl_int>(space_.rows));
+  kernel.setArg(6, static_cast<cl_int>(halves.halfColumns()));
+  context_.run(kernel,
+               cl::NDRange(1 + space_.cellFloats() / 16, static_cast<std::size_t>(space_.columns),
+                           static_cast<std::size_t>(rows.count())),
+               cl::NullRange);
+  empty_ = false;
+}
+
 void WeightSystem::relax(const WeightWindow& window, int sweeps, float smoothness, float trust) {
   assert(smoothness > 0.0f && trust > 0.0f && !empty_);
   const WindowRows& rows = window.rows();

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "compress/difference_fit.hpp"
+#include "compress/half_cells.hpp"
 #include "compress/weight_window.hpp"
 #include "device/device_context.hpp"
 #include "device/pooled_buffer.hpp"
@@ -27,6 +28,9 @@ class WeightSystem {
   /// textures  D of the band, as DifferenceFit leaves it
   void add(const GridBand& band, const cl::Buffer& tile_at, const cl::Buffer& textures, const WeightWindow& window,
            double metric_weight);
+
+  /// Takes the equations of the window's free rows from half cells, instead of adding bands. Does not wait.
+  void gather(const HalfCells& halves, const WeightWindow& window);
 
   /// The two steps of add(), for benchmarks: the sums of every tile, and what they add to the cells.
   void sumTiles(const GridBand& band, const cl::Buffer& textures);

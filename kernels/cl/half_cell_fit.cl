@@ -1,0 +1,176 @@
+// half_cell_fit.cl - what the weights' equations need of difference textures that suit the present weights, without them
+// With w the weights at the centre of a half cell and G its Gram matrix (half_cell_gram.cl), the textures
+// D(p) = (w w^T + ridge)^-1 w Delta(p) of its texels (difference_fit.cl) enter the equations of the weights
+// (weight_system.cl) as two sums over the texels only:
+//   S = sum_p t D Delta^T = A^-1 w G,   B = sum_p t D D^T = A^-1 w G w^T A^-1,   A = w w^T + ridge
+// NDRange  global {groups, half rows}, local {1, 1}: one work-item per 16 half cells side by side, one in each lane
+// Buffers  grams    in   as half_cell_gram.cl writes it
+//          weights  in   [row][column][C][lanes] float   W_n of the cell rows from first_cell_row on, n innermost
+//          halves   out  [half row][half column][HALF_ENTRIES] float   B, C (C + 1) / 2 rounded up to 16; then S, [C][lanes]
+//          errors   out  [half row][group] float   sum_p t |Delta - D^T w|^2 over the group
+// Defines  EXPRESSIONS, EXPRESSION_LANES, TEXTURES  as in difference_fit.cl
+// Sums     fixed order: expressions
+
+#define PAIR(i, j) ((i) * ((i) + 1) / 2 + (j))  // j <= i
+#define GRAM(n, m) grams[(m) * ((m) + 1) / 2 + (n)]  // n <= m
+
+// Weights of 16 half cells, a quarter of a cell from the centre of their own cell towards the next: [C][N], lane by lane.
+static void interpolate(global const float16* restrict own_row, global const float16* restrict next_row,
+                        const int first_half, const int columns, float weights[TEXTURES * EXPRESSION_LANES * 16]) {
+  const int vectors = TEXTURES * EXPRESSION_LANES / 16;
+  for (int lane = 0; lane < 16; ++lane) {
+    const int half_column = first_half + lane;
+    const int own = min(half_column / 2, columns - 1);
+    const int next = clamp(own + (half_column % 2 ? 1 : -1), 0, columns - 1);
+    for (int v = 0; v < vectors; ++v) {
+      const float16 value = 0.5625f * own_row[own * vectors + v] + 0.0625f * next_row[next * vectors + v] +
+                            0.1875f * (own_row[next * vectors + v] + next_row[own * vectors + v]);
+      float values[16];
+      vstore16(value, 0, values);
+      for (int k = 0; k < 16; ++k) weights[(v * 16 + k) * 16 + lane] = values[k];
+    }
+  }
+}
+
+// Factors `a` + ridge in place: L below the diagonal, 1 / L on it.
+static void factor(float16 a[PAIRS], const float ridge) {
+#pragma unroll
+  for (int i = 0; i < TEXTURES; ++i) {
+#pragma unroll
+    for (int j = 0; j <= i; ++j) {
+      float16 value = a[PAIR(i, j)];
+      if (i == j) value += ridge;
+#pragma unroll
+      for (int k = 0; k < j; ++k) value -= a[PAIR(i, k)] * a[PAIR(j, k)];
+      a[PAIR(i, j)] = i == j ? 1.0f / sqrt(fmax(value, (float16)(ridge))) : value * a[PAIR(j, j)];
+    }
+  }
+}
+
+// x of L L^T x = x, in place.
+static void solve(const float16 l[PAIRS], float16 x[TEXTURES]) {
+#pragma unroll
+  for (int i = 0; i < TEXTURES; ++i) {
+#pragma unroll
+    for (int j = 0; j < i; ++j) x[i] -= l[PAIR(i, j)] * x[j];
+    x[i] *= l[PAIR(i, i)];
+  }
+#pragma unroll
+  for (int i = TEXTURES - 1; i >= 0; --i) {
+#pragma unroll
+    for (int j = i + 1; j < TEXTURES; ++j) x[i] -= l[PAIR(j, i)] * x[j];
+    x[i] *= l[PAIR(i, i)];
+  }
+}
+
+// w G of expression m.
+static void multiply(global const float16* restrict grams, const float16* w, const int m, float16 product[TEXTURES]) {
+#pragma unroll
+  for (int i = 0; i < TEXTURES; ++i) product[i] = 0.0f;
+  for (int n = 0; n < m; ++n) {
+    const float16 g = GRAM(n, m);
+#pragma unroll
+    for (int i = 0; i < TEXTURES; ++i) product[i] = FMA(w[i * EXPRESSION_LANES + n], g, product[i]);
+  }
+  for (int n = m; n < EXPRESSIONS; ++n) {
+    const float16 g = GRAM(m, n);
+#pragma unroll
+    for (int i = 0; i < TEXTURES; ++i) product[i] = FMA(w[i * EXPRESSION_LANES + n], g, product[i]);
+  }
+}
+
+// B = A^-1 (w G w^T) A^-1, from the product in the middle.
+static void surround(const float16 l[PAIRS], const float16 middle[PAIRS], float16 b[PAIRS]) {
+  float16 x[TEXTURES][TEXTURES];  // rows are the columns of A^-1 middle
+#pragma unroll
+  for (int j = 0; j < TEXTURES; ++j) {
+#pragma unroll
+    for (int i = 0; i < TEXTURES; ++i) x[j][i] = middle[i > j ? PAIR(i, j) : PAIR(j, i)];
+    solve(l, x[j]);
+  }
+#pragma unroll
+  for (int i = 0; i < TEXTURES; ++i) {
+    float16 row[TEXTURES];
+#pragma unroll
+    for (int j = 0; j < TEXTURES; ++j) row[j] = x[j][i];
+    solve(l, row);
+#pragma unroll
+    for (int j = 0; j <= i; ++j) b[PAIR(i, j)] = row[j];
+  }
+}
+
+kernel __attribute__((reqd_work_group_size(1, 1, 1))) void half_cell_fit(
+    global const float16* restrict grams, global const float16* restrict weights, global float* restrict halves,
+    global float* restrict errors, const int first_half_row, const int first_cell_row, const int cell_columns,
+    const int cell_rows, const float ridge) {
+  const int group = (int)get_global_id(0);
+  const int groups = (int)get_global_size(0);
+  const int half_row = (int)get_global_id(1);
+  const ulong item = (ulong)half_row * groups + group;
+  grams += item * (EXPRESSIONS * (EXPRESSIONS + 1) / 2);
+  halves += item * (ulong)(16 * HALF_ENTRIES);
+
+  float16 trace = 0.0f;
+  for (int n = 0; n < EXPRESSIONS; ++n) trace += GRAM(n, n);
+  if (sum_of_16(trace) == 0.0f) {  // no covered texel that ever changes
+    for (int e = 0; e < 16 * HALF_ENTRIES; ++e) halves[e] = 0.0f;
+    errors[item] = 0.0f;
+    return;
+  }
+
+  float16 w[TEXTURES * EXPRESSION_LANES];
+  const int own_row = (first_half_row + half_row) / 2;
+  const int next_row = clamp(own_row + ((first_half_row + half_row) % 2 ? 1 : -1), 0, cell_rows - 1);
+  const ulong row_vectors = (ulong)cell_columns * (TEXTURES * EXPRESSION_LANES / 16);
+  interpolate(weights + (own_row - first_cell_row) * row_vectors, weights + (next_row - first_cell_row) * row_vectors,
+              group * 16, cell_columns, (float*)w);
+
+  float16 a[PAIRS];
+  float16 l[PAIRS];
+  float16 middle[PAIRS];
+#pragma unroll
+  for (int p = 0; p < PAIRS; ++p) a[p] = middle[p] = 0.0f;
+  for (int n = 0; n < EXPRESSIONS; ++n) {
+#pragma unroll
+    for (int i = 0; i < TEXTURES; ++i) {
+#pragma unroll
+      for (int j = 0; j <= i; ++j) {
+        a[PAIR(i, j)] = FMA(w[i * EXPRESSION_LANES + n], w[j * EXPRESSION_LANES + n], a[PAIR(i, j)]);
+      }
+    }
+  }
+#pragma unroll
+  for (int p = 0; p < PAIRS; ++p) l[p] = a[p];
+  factor(l, ridge);
+
+  // Entry e of lane k is results[e][k].
+  float16 results[HALF_ENTRIES];
+  for (int e = 0; e < HALF_ENTRIES; ++e) results[e] = 0.0f;
+  float16 error = trace;
+  for (int m = 0; m < EXPRESSIONS; ++m) {
+    float16 x[TEXTURES];
+    multiply(grams, w, m, x);
+#pragma unroll
+    for (int i = 0; i < TEXTURES; ++i) {
+#pragma unroll
+      for (int j = 0; j <= i; ++j) middle[PAIR(i, j)] = FMA(x[i], w[j * EXPRESSION_LANES + m], middle[PAIR(i, j)]);
+    }
+    solve(l, x);
+#pragma unroll
+    for (int i = 0; i < TEXTURES; ++i) {
+      results[SIDES_BEGIN + i * EXPRESSION_LANES + m] = x[i];
+      error -= 2.0f * x[i] * w[i * EXPRESSION_LANES + m];
+    }
+  }
+  surround(l, middle, results);
+#pragma unroll
+  for (int i = 0; i < TEXTURES; ++i) {
+#pragma unroll
+    for (int j = 0; j <= i; ++j) error += (i == j ? 1.0f : 2.0f) * results[PAIR(i, j)] * a[PAIR(i, j)];
+  }
+  const float* values = (const float*)results;
+  for (int lane = 0; lane < 16; ++lane) {
+    for (int e = 0; e < HALF_ENTRIES; ++e) halves[lane * HALF_ENTRIES + e] = values[e * 16 + lane];
+  }
+  errors[item] = sum_of_16(fmax(error, (float16)(0.0f)));
+}

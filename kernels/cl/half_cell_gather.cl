@@ -7,23 +7,11 @@
 // Defines  TEXTURES, EXPRESSION_LANES  as in difference_fit.cl
 // Sums     fixed order: half cells by row, then column
 
-// Mean square of the way from the centre of a half cell, along one axis, in cells.
-#define SPREAD (1.0f / 48)
-
 // What half cell h weighs in cell q of `cells`.
 inline float share(const int h, const int q, const int cells) {
   const int own = h / 2;
   const int next = clamp(own + (h % 2 ? 1 : -1), 0, cells - 1);
   return (own == q ? 0.75f : 0.0f) + (next == q ? 0.25f : 0.0f);
-}
-
-// Mean over the texels of half cell h of the product of the hats of cells q and r.
-inline float product(const int h, const int q, const int r, const int cells) {
-  const int own = h / 2;
-  const int next = clamp(own + (h % 2 ? 1 : -1), 0, cells - 1);
-  const float plain = share(h, q, cells) * share(h, r, cells);
-  if (own == next || (q != own && q != next) || (r != own && r != next)) return plain;
-  return plain + (q == r ? SPREAD : -SPREAD);
 }
 
 static void add_sides(global const float16* restrict half_cell, const float weight, const int vector, float16* sum) {
@@ -45,8 +33,8 @@ kernel void half_cell_gather(global const float* restrict halves, global float* 
   }
   for (int y = max(2 * row - 1, first_half_row); y < min(2 * row + 3, first_half_row + held_half_rows); ++y) {
     const float share_y = share(y, row, cell_rows);
-    const float below_y = row + 1 < cell_rows ? product(y, row, row + 1, cell_rows) : 0.0f;
-    const float self_y = product(y, row, row, cell_rows);
+    const float below_y = row + 1 < cell_rows ? share_y * share(y, row + 1, cell_rows) : 0.0f;
+    const float self_y = share_y * share_y;
     for (int x = max(2 * column - 1, 0); x < min(2 * column + 3, 2 * columns); ++x) {
       const float share_x = share(x, column, columns);
       global const float* half_cell = halves + ((ulong)(y - first_half_row) * half_columns + x) * HALF_ENTRIES;
@@ -54,8 +42,8 @@ kernel void half_cell_gather(global const float* restrict halves, global float* 
         add_sides((global const float16*)half_cell, share_x * share_y, part - 1, &sides);
         continue;
       }
-      const float right_x = column + 1 < columns ? product(x, column, column + 1, columns) : 0.0f;
-      const float self_x = product(x, column, column, columns);
+      const float right_x = column + 1 < columns ? share_x * share(x, column + 1, columns) : 0.0f;
+      const float self_x = share_x * share_x;
       for (int p = 0; p < PAIRS; ++p) {
         blocks[p] += self_x * self_y * half_cell[p];
         blocks[PAIRS + p] += right_x * self_y * half_cell[p];

@@ -161,14 +161,14 @@ TEST_P(HalfCellsTest, GatheredEquationsEqualReference) {
       for (int y = std::max(0, 2 * row - 1); y < std::min(2 * space.rows, 2 * row + 3); ++y) {
         for (int x = std::max(0, 2 * column - 1); x < std::min(2 * space.columns, 2 * column + 3); ++x) {
           const reference::HalfCellFit fit = problem.expected(y, x);
-          const auto along_y = [&](int r) { return reference::halfCellProduct(y, row, r, space.rows); };
-          const auto along_x = [&](int q) { return reference::halfCellProduct(x, column, q, space.columns); };
-          sides += reference::halfCellShare(y, row, space.rows) * reference::halfCellShare(x, column, space.columns) *
-                   fit.sides;
+          const auto along_y = [&](int r) { return reference::halfCellShare(y, r, space.rows); };
+          const auto along_x = [&](int q) { return reference::halfCellShare(x, q, space.columns); };
+          const double share = along_y(row) * along_x(column);
+          sides += share * fit.sides;
           for (int k = 0; k < 4; ++k) {
             const int r = row + k / 2;
             const int q = column + k % 2;
-            if (r < space.rows && q < space.columns) blocks[k] += along_y(r) * along_x(q) * fit.block;
+            if (r < space.rows && q < space.columns) blocks[k] += share * along_y(r) * along_x(q) * fit.block;
           }
           scale += fit.block.norm() + fit.sides.norm() + problem.deltas(y, x).squaredNorm();
         }

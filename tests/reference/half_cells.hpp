@@ -1,4 +1,4 @@
-// Reference for kernels/cl/half_cell_*.cl: one half cell at a time in double, its shares of cells by numerical means.
+// Reference for kernels/cl/half_cell_*.cl: one half cell at a time in double.
 #pragma once
 
 #include <Eigen/Dense>
@@ -7,26 +7,10 @@
 
 namespace facezip::reference {
 
-/// Mean over half cell h, along one axis, of f(position in cells), the edge repeated.
-template <typename Function>
-double meanOfHalfCell(int h, int cells, const Function& f) {
-  constexpr int kSteps = 512;
-  double sum = 0.0;
-  for (int k = 0; k < kSteps; ++k) {
-    const double position = (h + (k + 0.5) / kSteps) / 2.0 - 0.5;
-    sum += f(std::clamp(position, 0.0, cells - 1.0));
-  }
-  return sum / kSteps;
-}
-
-inline double hatAt(double position, int q) { return std::max(0.0, 1.0 - std::abs(position - q)); }
-
-/// Mean of the hat of cell q, and of the product of those of q and r.
+/// Weight of cell q at the centre of half cell h, along one axis: the bilinear hat with the edge repeated.
 inline double halfCellShare(int h, int q, int cells) {
-  return meanOfHalfCell(h, cells, [&](double x) { return hatAt(x, q); });
-}
-inline double halfCellProduct(int h, int q, int r, int cells) {
-  return meanOfHalfCell(h, cells, [&](double x) { return hatAt(x, q) * hatAt(x, r); });
+  const double position = std::clamp((h + 0.5) / 2.0 - 0.5, 0.0, cells - 1.0);
+  return std::max(0.0, 1.0 - std::abs(position - q));
 }
 
 /// What the textures that suit weights w (C x N) add to the equations, and their squared error.

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <stop_token>
+#include <thread>
+
 #include "facezip/capture.hpp"
 #include "small_capture.hpp"
 #include "temporary_directory.hpp"
@@ -25,12 +28,26 @@ TEST(SampleBands, EveryPassGivesTheSameSamplesFromDiskAndFromScratch) {
   image::SampleBands decoded(capture.maps[0], capture.expressions);
   image::SampleBands kept(capture.maps[0], capture.expressions);
   kept.keepDecoded(folder.path());
+  std::jthread decoder([&](const std::stop_token& stop) { kept.decode(stop); });
   const auto first = collect(decoded, 16);
   EXPECT_EQ(first.size(), decoded.decodedBytes());
   EXPECT_EQ(collect(decoded, 16), first) << "decoded again";
-  EXPECT_EQ(collect(kept, 16), first) << "first pass with scratch file";
+  EXPECT_EQ(collect(kept, 16), first) << "first pass, while textures are decoded";
+  decoder.join();
   std::filesystem::remove(capture.maps[0].expressions[1]);
   EXPECT_EQ(collect(kept, 16), first) << "second pass reads no texture";
+}
+
+TEST(SampleBands, PassesThrowWhatDecodingMet) {
+  const test::TemporaryDirectory folder;
+  test::writeSmallCapture(folder / "c", {.expressions = 3, .width = 200, .height = 300});
+  const Capture capture = openCapture(folder / "c");
+  const auto& damaged = capture.maps[0].expressions[1];
+  std::filesystem::resize_file(damaged, std::filesystem::file_size(damaged) / 2);
+  image::SampleBands bands(capture.maps[0], capture.expressions);
+  bands.keepDecoded(folder.path());
+  std::jthread decoder([&](const std::stop_token& stop) { bands.decode(stop); });
+  EXPECT_THROW(collect(bands, 16), InputError);
 }
 
 TEST(SampleBands, FirstImageIsTheNeutral) {

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <stop_token>
+#include <thread>
 
 #include "compress/band_plan.hpp"
 #include "compress/code_bits.hpp"
@@ -98,8 +100,9 @@ class Compression {
   }
 
   CompressReport run() {
-    readGeometry();
     openTextures();
+    readGeometry();
+    planBands();
     accumulateGrams();
     do {
       layGrid();
@@ -144,9 +147,18 @@ class Compression {
     clock_.book("masks");
   }
 
-  // Textures, and how large a band may be.
+  // Textures: from here on they are decoded beside the work.
   void openTextures() {
-    maps_ = openMaps(capture_, face_, options_.gutter);
+    maps_ = openMaps(capture_);
+    if (!keepDecoded()) return;
+    decoder_ = std::jthread([this](const std::stop_token& stop) {
+      for (OpenMap& map : maps_.maps) map.samples->decode(stop);
+    });
+  }
+
+  // How the maps lie on the face and on the weight grid, and how large a band may be.
+  void planBands() {
+    makeRasters(maps_, face_, options_.gutter);
     groups_.resize(options_.weights_per_map ? maps_.maps.size() : 1);
     for (std::size_t m = 0; m < maps_.maps.size(); ++m) {
       groups_[options_.weights_per_map ? m : 0].maps.push_back(&maps_.maps[m]);
@@ -158,7 +170,6 @@ class Compression {
       assignWeightScales(maps_, options_.weight_scale);
     }
     report_.band_rows = plannedBandRows();
-    keepDecoded();
     clock_.book("weight grid");
   }
 
@@ -302,8 +313,8 @@ class Compression {
                           residentBytes(), context_.info());
   }
 
-  /// Later passes read decoded samples from a scratch file beside the package where the disk has room for it.
-  void keepDecoded() {
+  /// Textures are decoded once, into a scratch file beside the package, where the disk has room for it: true then.
+  bool keepDecoded() {
     std::uint64_t decoded_bytes = 0;
     for (const OpenMap& map : maps_.maps) decoded_bytes += map.samples->decodedBytes();
     const fs::path directory = staged_.path();
@@ -313,10 +324,11 @@ class Compression {
       progress_.note(
           fmt::format("no room for {} MB of decoded textures beside the package: decoding them in every pass",
                       decoded_bytes / 1000000));
-      return;
+      return false;
     }
     report_.decoded = "scratch file";
     for (OpenMap& map : maps_.maps) map.samples->keepDecoded(directory);
+    return true;
   }
 
   void forEachBand(OpenMap& map, const std::string& stage, const MakeTiles& make_tiles,
@@ -608,6 +620,7 @@ class Compression {
   double reached_ = 0.0;                 ///< RMSE of the last attempt, where there is a target
   std::vector<WeightGroup> groups_;
   std::vector<std::uint64_t> covered_texels_;  ///< of every map
+  std::jthread decoder_;                       ///< reads what the members above hold: the first to go
 };
 
 }  // namespace

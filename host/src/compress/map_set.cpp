@@ -18,9 +18,8 @@ int scaleOf(int side, int reference_side, int weight_scale) {
 
 }  // namespace
 
-MapSet openMaps(const Capture& capture, const Face& face, std::optional<int> gutter) {
+MapSet openMaps(const Capture& capture) {
   MapSet set;
-  std::map<std::pair<int, int>, std::shared_ptr<const raster::UvRaster>> rasters;
   const bool any_counts = std::any_of(capture.maps.begin(), capture.maps.end(),
                                       [](const CaptureMap& source) { return source.metric_weight > 0.0; });
   for (const CaptureMap& source : capture.maps) {
@@ -28,6 +27,19 @@ MapSet openMaps(const Capture& capture, const Face& face, std::optional<int> gut
     map.source = &source;
     map.metric_weight = any_counts ? source.metric_weight : 1.0;
     map.samples = std::make_unique<image::SampleBands>(source, capture.expressions);
+    set.maps.push_back(std::move(map));
+    const image::ImageShape& shape = set.maps.back().samples->shape();
+    const image::ImageShape& largest = set.maps[set.reference].samples->shape();
+    if (static_cast<long>(shape.width) * shape.height > static_cast<long>(largest.width) * largest.height) {
+      set.reference = set.maps.size() - 1;
+    }
+  }
+  return set;
+}
+
+void makeRasters(MapSet& set, const Face& face, std::optional<int> gutter) {
+  std::map<std::pair<int, int>, std::shared_ptr<const raster::UvRaster>> rasters;
+  for (OpenMap& map : set.maps) {
     const image::ImageShape& shape = map.samples->shape();
     auto& raster = rasters[{shape.width, shape.height}];
     if (!raster) {
@@ -35,13 +47,7 @@ MapSet openMaps(const Capture& capture, const Face& face, std::optional<int> gut
       raster = std::make_shared<raster::UvRaster>(face.mesh, face.region, shape.width, shape.height, reach);
     }
     map.raster = raster;
-    set.maps.push_back(std::move(map));
-    const image::ImageShape& largest = set.maps[set.reference].samples->shape();
-    if (static_cast<long>(shape.width) * shape.height > static_cast<long>(largest.width) * largest.height) {
-      set.reference = set.maps.size() - 1;
-    }
   }
-  return set;
 }
 
 void assignFitWeights(std::span<OpenMap* const> maps) {

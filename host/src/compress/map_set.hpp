@@ -29,10 +29,13 @@ struct MapSet {
       0;  ///< the largest map, whose texels weight_scale counts; the weight grid is made at its size
 };
 
-/// Opens every texture of the capture, checks them and makes one raster per size. Weight scales are left open.
-/// gutter  texels; none: max(16, side / 64)
+/// Opens every texture of the capture and checks them. Rasters and weight scales are left open.
 /// Throws InputError: a texture that does not fit its neutral.
-MapSet openMaps(const Capture& capture, const Face& face, std::optional<int> gutter);
+MapSet openMaps(const Capture& capture);
+
+/// Makes one raster per size of the maps.
+/// gutter  texels; none: max(16, side / 64)
+void makeRasters(MapSet& set, const Face& face, std::optional<int> gutter);
 
 /// Sets the fit weight of maps that share a set of weights: their metric weight, but 1 where that of each is 0.
 void assignFitWeights(std::span<OpenMap* const> maps);

@@ -60,7 +60,8 @@ void requireSameShape(const compress::OpenMap& map, const PackageMap& packed, co
 }
 
 compress::MapSet openMaps(const Subject& subject) {
-  compress::MapSet maps = compress::openMaps(subject.capture, subject.face, 0);
+  compress::MapSet maps = compress::openMaps(subject.capture);
+  compress::makeRasters(maps, subject.face, 0);
   assignWeightScales(maps, subject.recorded.weight_scale);
   return maps;
 }

@@ -50,42 +50,64 @@ std::size_t SampleBands::bandBytes(int rows) const {
 
 std::size_t SampleBands::decodedBytes() const { return bandBytes(shape_.height); }
 
-void SampleBands::decodeBand(int begin, int end, std::span<std::byte> out) {
-  const auto start = std::chrono::steady_clock::now();
-  const std::size_t image_bytes = static_cast<std::size_t>(end - begin) * shape_.rowBytes();
-  tbb::parallel_for(std::size_t{0}, readers_.size(), [&](std::size_t i) {
-    readers_[i].readRows(begin, end, out.subspan(i * image_bytes, image_bytes));
-  });
-  decode_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 std::size_t SampleBands::scratchOffset(std::size_t image, int row) const {
   return (image * static_cast<std::size_t>(shape_.height) + static_cast<std::size_t>(row)) * shape_.rowBytes();
 }
 
-void SampleBands::readRows(int begin, int end, std::span<std::byte> out) {
-  assert(out.size() == bandBytes(end - begin));
-  if (!kept_) return decodeBand(begin, end, out);
+template <typename Keep>
+void SampleBands::decodeRows(int begin, int end, std::span<std::byte> out, const Keep& keep) {
+  const auto start = std::chrono::steady_clock::now();
   const std::size_t image_bytes = static_cast<std::size_t>(end - begin) * shape_.rowBytes();
-  for (std::size_t i = 0; i < readers_.size(); ++i) {
-    scratch_->read(scratchOffset(i, begin), out.subspan(i * image_bytes, image_bytes));
+  tbb::parallel_for(std::size_t{0}, readers_.size(), [&](std::size_t i) {
+    const std::span<std::byte> rows = out.subspan(i * image_bytes, image_bytes);
+    readers_[i].readRows(begin, end, rows);
+    keep(i, rows);
+  });
+  decode_seconds_ = decode_seconds_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void SampleBands::decode(const std::stop_token& stop) noexcept {
+  assert(scratch_ && decoded_rows_ == 0);
+  constexpr int kRowsAtOnce = 64;
+  try {
+    std::vector<std::byte> buffer(bandBytes(std::min(kRowsAtOnce, shape_.height)));
+    for (int begin = 0; begin < shape_.height && !stop.stop_requested(); begin += kRowsAtOnce) {
+      const int end = std::min(begin + kRowsAtOnce, shape_.height);
+      decodeRows(
+          begin, end, std::span(buffer).first(bandBytes(end - begin)),
+          [&](std::size_t i, std::span<const std::byte> rows) { scratch_->write(scratchOffset(i, begin), rows); });
+      const std::lock_guard lock(mutex_);
+      decoded_rows_ = end;
+      decoded_.notify_all();
+    }
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    failure_ = std::current_exception();
+    decoded_.notify_all();
   }
 }
 
-void SampleBands::readBand(int begin, int end, std::span<std::byte> out) {
-  readRows(begin, end, out);
-  if (kept_ || !scratch_) return;
+void SampleBands::waitForRows(int end) {
+  std::unique_lock lock(mutex_);
+  decoded_.wait(lock, [&] { return decoded_rows_ >= end || failure_; });
+  if (decoded_rows_ < end) std::rethrow_exception(failure_);
+}
+
+void SampleBands::readRows(int begin, int end, std::span<std::byte> out) {
+  assert(out.size() == bandBytes(end - begin));
+  if (!scratch_) return decodeRows(begin, end, out, [](std::size_t, std::span<const std::byte>) {});
+  waitForRows(end);
   const std::size_t image_bytes = static_cast<std::size_t>(end - begin) * shape_.rowBytes();
-  for (std::size_t i = 0; i < readers_.size(); ++i) {
-    scratch_->write(scratchOffset(i, begin), out.subspan(i * image_bytes, image_bytes));
-  }
+  tbb::parallel_for(std::size_t{0}, readers_.size(), [&](std::size_t i) {
+    scratch_->read(scratchOffset(i, begin), out.subspan(i * image_bytes, image_bytes));
+  });
 }
 
 void SampleBands::forEachBand(int band_rows, Progress& progress, const std::function<void(const SampleBand&)>& visit) {
   const auto load = [this, band_rows](int begin, std::vector<std::byte>& buffer) {
     const int end = std::min(begin + band_rows, shape_.height);
     buffer.resize(bandBytes(end - begin));
-    readBand(begin, end, buffer);
+    readRows(begin, end, buffer);
   };
   std::future<void> next = std::async(std::launch::async, load, 0, std::ref(buffers_[0]));
   int current = 0;
@@ -99,7 +121,6 @@ void SampleBands::forEachBand(int band_rows, Progress& progress, const std::func
     visit({begin, end, buffers_[current]});
     current = 1 - current;
   }
-  kept_ = scratch_ != nullptr;
   for (std::vector<std::byte>& buffer : buffers_) std::vector<std::byte>().swap(buffer);
 }
 

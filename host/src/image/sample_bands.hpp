@@ -1,11 +1,16 @@
 // sample_bands.hpp - the textures of one map, neutral and expressions together, in bands of rows.
 #pragma once
 
+#include <atomic>
+#include <condition_variable>
 #include <cstddef>
+#include <exception>
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "facezip/capture.hpp"
@@ -34,15 +39,20 @@ class SampleBands {
   /// Bytes of all textures, decoded.
   std::size_t decodedBytes() const;
 
-  /// Keeps what the first pass decodes in a scratch file in `directory`, so that later passes read it from there.
+  /// Makes passes read from a scratch file in `directory` that decode() fills, once, whatever their number.
   void keepDecoded(const std::filesystem::path& directory) { scratch_ = std::make_unique<ScratchFile>(directory); }
+
+  /// Decodes every texture into the scratch file, from top to bottom; passes may run meanwhile, in other threads, and
+  /// wait for the rows that they read. What goes wrong is thrown by the passes. Call once, after keepDecoded().
+  /// stop  ends the decoding early; passes must be over by then
+  void decode(const std::stop_token& stop) noexcept;
 
   /// Calls `visit` for each band from top to bottom. The next band is read while `visit` works on this one; textures
   /// are decoded side by side. Throws InputError for an unreadable texture, what `visit` throws, and Cancelled.
   void forEachBand(int band_rows, Progress& progress, const std::function<void(const SampleBand&)>& visit);
 
-  /// Reads rows [begin, end) of every texture, as a SampleBand holds them: from the scratch file once a pass has filled
-  /// it. Passes over the rows must go from top to bottom where there is none. Throws InputError, OutputError.
+  /// Reads rows [begin, end) of every texture, as a SampleBand holds them: from the scratch file where there is one.
+  /// Passes over the rows must go from top to bottom where there is none. Throws InputError, OutputError.
   void readRows(int begin, int end, std::span<std::byte> out);
   std::size_t bandBytes(int rows) const;
 
@@ -52,18 +62,23 @@ class SampleBands {
   double decodeSeconds() const { return decode_seconds_; }
 
  private:
-  void readBand(int begin, int end, std::span<std::byte> out);
-  void decodeBand(int begin, int end, std::span<std::byte> out);
+  /// Decodes rows [begin, end) of each texture on several threads, and gives them to keep(texture, rows).
+  template <typename Keep>
+  void decodeRows(int begin, int end, std::span<std::byte> out, const Keep& keep);
+  void waitForRows(int end);
   std::size_t scratchOffset(std::size_t image, int row) const;
 
   CaptureMap map_;
   ImageShape shape_;
   std::vector<ImageReader> readers_;
   std::unique_ptr<ScratchFile> scratch_;
-  bool kept_ = false;  ///< a whole pass is in scratch_
+  std::mutex mutex_;                 ///< of the next three
+  std::condition_variable decoded_;  ///< rows came, or failure_
+  int decoded_rows_ = 0;             ///< that are in scratch_
+  std::exception_ptr failure_;       ///< of decode()
   std::vector<std::byte> buffers_[2];
   double wait_seconds_ = 0.0;
-  double decode_seconds_ = 0.0;
+  std::atomic<double> decode_seconds_ = 0.0;
 };
 
 }  // namespace facezip::image

@@ -18,9 +18,12 @@ BandShape bandShape(const image::SampleBands& samples, int rows) {
 void forEachMapBand(image::SampleBands& samples, int band_rows, BandBuffers& buffers, const MakeTiles& make_tiles,
                     std::string_view stage, Progress& progress, const std::function<void(const MapBand&)>& visit) {
   progress.stage(stage, static_cast<std::size_t>(samples.shape().height));
-  samples.forEachBand(band_rows, progress, [&](const image::SampleBand& band) {
+  TileMasks tiles[2];  // of the band at work and the one that is being read
+  const auto tilesOf = [&](int begin) -> TileMasks& { return tiles[begin / band_rows % 2]; };
+  const auto prepare = [&](int begin, int end) { tilesOf(begin) = make_tiles(begin, end); };
+  const auto work = [&](const image::SampleBand& band) {
     const BandShape shape = bandShape(samples, band.end - band.begin);
-    const TileMasks masks = make_tiles(band.begin, band.end);
+    const TileMasks& masks = tilesOf(band.begin);
     buffers.tiles.upload(masks);
     const cl::Buffer& raw = buffers.samples.upload(band.samples);
     const cl::Buffer& differences = buffers.differences.reserve(differenceBufferBytes(shape, masks.tiles.size()));
@@ -28,7 +31,8 @@ void forEachMapBand(image::SampleBands& samples, int band_rows, BandBuffers& buf
     visit({band.begin, band.end, shape, band.samples, masks, buffers.tiles, differences});
     buffers.context.finish();  // the next band reuses the buffers
     progress.advance(static_cast<std::size_t>(band.end));
-  });
+  };
+  samples.forEachBand(band_rows, progress, work, prepare);
 }
 
 }  // namespace facezip::compress

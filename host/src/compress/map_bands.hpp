@@ -38,7 +38,7 @@ class BandBuffers {
 /// Shape of the bands of a map, `rows` rows each.
 BandShape bandShape(const image::SampleBands& samples, int rows);
 
-/// Gives the tiles of rows [begin, end) of a map.
+/// Gives the tiles of rows [begin, end) of a map; called one band ahead, in another thread.
 using MakeTiles = std::function<TileMasks(int begin, int end)>;
 
 /// Runs `visit` on every band of a map from top to bottom, with its tiles uploaded and its differences computed.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <future>
 #include <memory>
 #include <numeric>
 
@@ -33,27 +34,33 @@ class MapWindow {
 
   double fitWeight() const { return map_.fit_weight; }
 
-  /// Loads the texels that rows [free_begin, free_end) of cells reach.
-  void moveTo(int free_begin, int free_end, const RefinementProblem& problem) {
+  /// Reads the texels that rows [free_begin, free_end) of cells reach into host memory. May run beside the device's
+  /// work on the window before.
+  void prepare(int free_begin, int free_end, const RefinementProblem& problem) {
     const int height = map_.samples->shape().height;
     const int halo = windowHalo(map_.weight_scale);
-    const int own_begin = std::min(free_begin * map_.weight_scale, height);
-    const int own_end = std::min(free_end * map_.weight_scale, height);
-    window_.moveTo(std::max(0, own_begin - halo), std::min(height, own_end + halo));
+    own_begin_ = std::min(free_begin * map_.weight_scale, height);
+    own_end_ = std::min(free_end * map_.weight_scale, height);
+    window_.moveTo(std::max(0, own_begin_ - halo), std::min(height, own_end_ + halo));
+    masks_ = problem.make_tiles(map_, window_.begin(), window_.end());
+  }
+
+  /// Puts what was prepared on the device.
+  void load() {
     shape_ = bandShape(*map_.samples, window_.end() - window_.begin());
-    const TileMasks masks = problem.make_tiles(map_, window_.begin(), window_.end());
+    first_row_ = window_.begin();
     const auto first_behind = [&](int row) {
       return static_cast<std::size_t>(
-          std::partition_point(masks.tiles.begin(), masks.tiles.end(),
-                               [&](const TilePosition& tile) { return window_.begin() + tile.y * kTileSide < row; }) -
-          masks.tiles.begin());
+          std::partition_point(masks_.tiles.begin(), masks_.tiles.end(),
+                               [&](const TilePosition& tile) { return first_row_ + tile.y * kTileSide < row; }) -
+          masks_.tiles.begin());
     };
-    own_first_ = first_behind(own_begin);
-    own_end_ = first_behind(own_end);
-    tiles_.upload(masks);
-    tile_at_.upload(std::span<const int>(tileLookup(masks, shape_)));
+    first_own_tile_ = first_behind(own_begin_);
+    end_of_own_tiles_ = first_behind(own_end_);
+    tiles_.upload(masks_);
+    tile_at_.upload(std::span<const int>(tileLookup(masks_, shape_)));
     const cl::Buffer& raw = samples_.upload(window_.samples());
-    differences_.reserve(differenceBufferBytes(shape_, masks.tiles.size()));
+    differences_.reserve(differenceBufferBytes(shape_, masks_.tiles.size()));
     computeDifferences(context_, tiles_, shape_, raw, differences_.buffer());
   }
 
@@ -63,7 +70,7 @@ class MapWindow {
   FitError error() {
     const std::vector<FitError> errors = fit_.errors();
     FitError sum;
-    for (std::size_t t = own_first_; t < own_end_; ++t) {
+    for (std::size_t t = first_own_tile_; t < end_of_own_tiles_; ++t) {
       sum.weighted += errors[t].weighted;
       sum.plain += errors[t].plain;
     }
@@ -77,26 +84,32 @@ class MapWindow {
 
   /// Of the free rows' tiles, [tile][plane].
   std::vector<TextureRange> ranges() {
-    return finder_.findPerTile(tiles_, shape_, fit_.textures(), own_first_, own_end_);
+    return finder_.findPerTile(tiles_, shape_, fit_.textures(), first_own_tile_, end_of_own_tiles_);
   }
   std::size_t planes() const { return static_cast<std::size_t>(textures_ * map_.samples->shape().channels); }
 
  private:
-  GridBand band() const { return {tiles_, shape_, differences_.buffer(), window_.begin(), map_.weight_scale}; }
+  GridBand band() const { return {tiles_, shape_, differences_.buffer(), first_row_, map_.weight_scale}; }
 
   OpenMap& map_;
   device::DeviceContext& context_;
   int textures_;
+  // What prepare() makes.
   image::SampleWindow window_;
+  TileMasks masks_;
+  int own_begin_ = 0;  ///< texel rows of the free cells
+  int own_end_ = 0;
+  // What is on the device.
   BandShape shape_;
+  int first_row_ = 0;
   DeviceTiles tiles_;
   device::PooledBuffer samples_;
   device::PooledBuffer differences_;
   device::PooledBuffer tile_at_;
   DifferenceFit fit_;
   TextureRangeFinder finder_;
-  std::size_t own_first_ = 0;
-  std::size_t own_end_ = 0;
+  std::size_t first_own_tile_ = 0;
+  std::size_t end_of_own_tiles_ = 0;
 };
 
 class Refiner {
@@ -121,9 +134,13 @@ class Refiner {
   Refinement run(Progress& progress) {
     const int rows = problem_.space.rows;
     progress.stage("refining", static_cast<std::size_t>(rows));
+    std::future<void> ahead;  // reads the window after the one at work
+    prepare(0);
     for (int begin = 0; begin < rows; begin += problem_.window_rows) {
       const int end = std::min(begin + problem_.window_rows, rows);
+      if (ahead.valid()) ahead.get();
       moveTo(begin, end);
+      if (end < rows) ahead = std::async(std::launch::async, [this, end] { prepare(end); });
       sweep(progress);
       keep();
       progress.advance(static_cast<std::size_t>(end));
@@ -137,10 +154,15 @@ class Refiner {
   }
 
  private:
+  void prepare(int begin) {
+    const int end = std::min(begin + problem_.window_rows, problem_.space.rows);
+    for (const auto& map : maps_) map->prepare(begin, end, problem_);
+  }
+
   void moveTo(int begin, int end) {
     WindowRows rows{begin, end, begin, end};
     for (std::size_t m = 0; m < maps_.size(); ++m) {
-      maps_[m]->moveTo(begin, end, problem_);
+      maps_[m]->load();
       const int scale = problem_.maps[m]->weight_scale;
       const int halo = windowHalo(scale);
       const WindowRows reached =

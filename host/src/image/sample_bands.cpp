@@ -103,9 +103,11 @@ void SampleBands::readRows(int begin, int end, std::span<std::byte> out) {
   });
 }
 
-void SampleBands::forEachBand(int band_rows, Progress& progress, const std::function<void(const SampleBand&)>& visit) {
-  const auto load = [this, band_rows](int begin, std::vector<std::byte>& buffer) {
+void SampleBands::forEachBand(int band_rows, Progress& progress, const std::function<void(const SampleBand&)>& visit,
+                              const std::function<void(int begin, int end)>& prepare) {
+  const auto load = [this, band_rows, &prepare](int begin, std::vector<std::byte>& buffer) {
     const int end = std::min(begin + band_rows, shape_.height);
+    if (prepare) prepare(begin, end);
     buffer.resize(bandBytes(end - begin));
     readRows(begin, end, buffer);
   };

@@ -49,7 +49,9 @@ class SampleBands {
 
   /// Calls `visit` for each band from top to bottom. The next band is read while `visit` works on this one; textures
   /// are decoded side by side. Throws InputError for an unreadable texture, what `visit` throws, and Cancelled.
-  void forEachBand(int band_rows, Progress& progress, const std::function<void(const SampleBand&)>& visit);
+  /// prepare  if set, is called for each band beside its reading, in another thread than `visit` and one band ahead
+  void forEachBand(int band_rows, Progress& progress, const std::function<void(const SampleBand&)>& visit,
+                   const std::function<void(int begin, int end)>& prepare = {});
 
   /// Reads rows [begin, end) of every texture, as a SampleBand holds them: from the scratch file where there is one.
   /// Passes over the rows must go from top to bottom where there is none. Throws InputError, OutputError.

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <set>
 #include <utility>
@@ -23,6 +24,47 @@ void append(TileMasks& whole, const TileMasks& part) {
   whole.mask_index.insert(whole.mask_index.end(), part.mask_index.begin(), part.mask_index.end());
   whole.mask_weights.insert(whole.mask_weights.end(), part.mask_weights.begin(), part.mask_weights.end());
   whole.texel_weights.insert(whole.texel_weights.end(), part.texel_weights.begin(), part.texel_weights.end());
+}
+
+/// Calls visit(tile, active, covered) for every tile of one row of tiles with the 256 values of each: 1 where a texel
+/// has a triangle of the region (its own, or its neighbour's in the gutter), and where it is covered.
+template <typename Visit>
+void forEachTile(const std::vector<TexelSample>& samples, int width, int rows, int tile_y, const Visit& visit) {
+  std::array<float, kTileTexels> active;
+  std::array<float, kTileTexels> covered;
+  const int y_end = std::min(rows, (tile_y + 1) * kTileSide);
+  for (int tile_x = 0; tile_x * kTileSide < width; ++tile_x) {
+    const int x_end = std::min(width, (tile_x + 1) * kTileSide);
+    active.fill(0.0f);
+    covered.fill(0.0f);
+    bool any = false;
+    for (int y = tile_y * kTileSide; y < y_end; ++y) {
+      for (int x = tile_x * kTileSide; x < x_end; ++x) {
+        const TexelSample& sample =
+            samples[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+        if (sample.triangle < 0) continue;
+        const auto t = static_cast<std::size_t>((y - tile_y * kTileSide) * kTileSide + x - tile_x * kTileSide);
+        active[t] = 1.0f;
+        if (sample.kind == TexelSample::Kind::kCovered) covered[t] = 1.0f;
+        any = true;
+      }
+    }
+    if (any) visit(TilePosition{tile_x, tile_y}, active, covered);
+  }
+}
+
+/// Cuts samples into tiles, a row of tiles at a time on several threads: fill(row of tiles, tiles to append to).
+template <typename Fill>
+TileMasks tilesByRows(int rows, const Fill& fill) {
+  std::vector<TileMasks> parts(static_cast<std::size_t>((rows + kTileSide - 1) / kTileSide));
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t y) {
+    parts[y].mask_begin.push_back(0);
+    fill(static_cast<int>(y), parts[y]);
+  });
+  TileMasks whole;
+  whole.mask_begin.push_back(0);
+  for (const TileMasks& part : parts) append(whole, part);
+  return whole;
 }
 
 }  // namespace
@@ -96,20 +138,11 @@ void TexelMasks::addTile(const std::vector<TexelSample>& samples, int width, int
 compress::TileMasks TexelMasks::tiles(const UvRaster& raster, int begin, int end, Texels texels) const {
   const std::vector<TexelSample> samples =
       texels == Texels::kCovered ? raster.coveredRows(begin, end) : raster.rows(begin, end);
-  const int rows = end - begin;
-  const int tile_rows = (rows + kTileSide - 1) / kTileSide;
   const int tile_columns = (raster.width() + kTileSide - 1) / kTileSide;
-  std::vector<TileMasks> parts(static_cast<std::size_t>(tile_rows));
-  tbb::parallel_for(0, tile_rows, [&](int y) {
-    TileMasks& part = parts[static_cast<std::size_t>(y)];
-    part.mask_begin.push_back(0);
+  return tilesByRows(end - begin, [&](int y, TileMasks& out) {
     std::vector<float> scratch(static_cast<std::size_t>(masks_.mask_count) * kTileTexels, 0.0f);
-    for (int x = 0; x < tile_columns; ++x) addTile(samples, raster.width(), rows, {x, y}, scratch, part);
+    for (int x = 0; x < tile_columns; ++x) addTile(samples, raster.width(), end - begin, {x, y}, scratch, out);
   });
-  TileMasks whole;
-  whole.mask_begin.push_back(0);
-  for (const TileMasks& part : parts) append(whole, part);
-  return whole;
 }
 
 std::vector<compress::MaskPair> TexelMasks::overlappingPairs() const {
@@ -133,62 +166,29 @@ std::vector<compress::MaskPair> TexelMasks::overlappingPairs() const {
   return result;
 }
 
-namespace {
-
-/// Calls visit(tile, active, covered) for every tile with the 256 values of each: 1 where a texel has a triangle of the
-/// region (its own, or its neighbour's in the gutter), and where it is covered.
-template <typename Visit>
-void forEachTile(const std::vector<TexelSample>& samples, int width, int rows, const Visit& visit) {
-  std::vector<float> active(kTileTexels);
-  std::vector<float> covered(kTileTexels);
-  for (int tile_y = 0; tile_y * kTileSide < rows; ++tile_y) {
-    const int y_end = std::min(rows, (tile_y + 1) * kTileSide);
-    for (int tile_x = 0; tile_x * kTileSide < width; ++tile_x) {
-      const int x_end = std::min(width, (tile_x + 1) * kTileSide);
-      std::fill(active.begin(), active.end(), 0.0f);
-      std::fill(covered.begin(), covered.end(), 0.0f);
-      bool any = false;
-      for (int y = tile_y * kTileSide; y < y_end; ++y) {
-        for (int x = tile_x * kTileSide; x < x_end; ++x) {
-          const TexelSample& sample =
-              samples[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
-          if (sample.triangle < 0) continue;
-          const auto t = static_cast<std::size_t>((y - tile_y * kTileSide) * kTileSide + x - tile_x * kTileSide);
-          active[t] = 1.0f;
-          if (sample.kind == TexelSample::Kind::kCovered) covered[t] = 1.0f;
-          any = true;
-        }
-      }
-      if (any) visit(TilePosition{tile_x, tile_y}, active, covered);
-    }
-  }
-}
-
-}  // namespace
-
 compress::TileMasks coverageTiles(const UvRaster& raster, int begin, int end) {
-  TileMasks out;
-  forEachTile(raster.coveredRows(begin, end), raster.width(), end - begin,
-              [&](TilePosition tile, const std::vector<float>&, const std::vector<float>& covered) {
-                out.tiles.push_back(tile);
-                out.texel_weights.insert(out.texel_weights.end(), covered.begin(), covered.end());
-              });
-  out.mask_begin.assign(out.tiles.size() + 1, 0);
-  return out;
+  const std::vector<TexelSample> samples = raster.coveredRows(begin, end);
+  return tilesByRows(end - begin, [&](int tile_y, TileMasks& out) {
+    forEachTile(samples, raster.width(), end - begin, tile_y, [&](TilePosition tile, const auto&, const auto& covered) {
+      out.tiles.push_back(tile);
+      out.mask_begin.push_back(0);
+      out.texel_weights.insert(out.texel_weights.end(), covered.begin(), covered.end());
+    });
+  });
 }
 
 compress::TileMasks activeTiles(const UvRaster& raster, int begin, int end) {
-  TileMasks out;
-  out.mask_begin.push_back(0);
-  forEachTile(raster.rows(begin, end), raster.width(), end - begin,
-              [&](TilePosition tile, const std::vector<float>& active, const std::vector<float>& covered) {
-                out.tiles.push_back(tile);
-                out.mask_index.push_back(0);
-                out.mask_weights.insert(out.mask_weights.end(), active.begin(), active.end());
-                out.mask_begin.push_back(static_cast<int>(out.mask_index.size()));
-                out.texel_weights.insert(out.texel_weights.end(), covered.begin(), covered.end());
-              });
-  return out;
+  const std::vector<TexelSample> samples = raster.rows(begin, end);
+  return tilesByRows(end - begin, [&](int tile_y, TileMasks& out) {
+    forEachTile(samples, raster.width(), end - begin, tile_y,
+                [&](TilePosition tile, const auto& active, const auto& covered) {
+                  out.tiles.push_back(tile);
+                  out.mask_index.push_back(0);
+                  out.mask_weights.insert(out.mask_weights.end(), active.begin(), active.end());
+                  out.mask_begin.push_back(static_cast<int>(out.mask_index.size()));
+                  out.texel_weights.insert(out.texel_weights.end(), covered.begin(), covered.end());
+                });
+  });
 }
 
 }  // namespace facezip::raster

@@ -1,5 +1,8 @@
 #include "raster/uv_raster.hpp"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -44,13 +47,13 @@ UvRaster::UvRaster(const geometry::TriangleMesh& mesh, std::span<const int> regi
   }
 }
 
-void UvRaster::fillTriangle(const UvTriangle& t, int begin, int end, std::vector<TexelSample>& samples) const {
+void UvRaster::fillTriangle(const UvTriangle& t, int begin, int end, int first, std::span<TexelSample> samples) const {
   const int y_begin = std::max(begin, static_cast<int>(std::ceil(std::min({t.y[0], t.y[1], t.y[2]}) - kEdgeSlack)));
   const int y_end = std::min(end, static_cast<int>(std::floor(std::max({t.y[0], t.y[1], t.y[2]}) + kEdgeSlack)) + 1);
   const int x_begin = std::max(0, static_cast<int>(std::ceil(std::min({t.x[0], t.x[1], t.x[2]}) - kEdgeSlack)));
   const int x_end = std::min(width_, static_cast<int>(std::floor(std::max({t.x[0], t.x[1], t.x[2]}) + kEdgeSlack)) + 1);
   for (int y = y_begin; y < y_end; ++y) {
-    TexelSample* row = samples.data() + static_cast<std::size_t>(y - begin) * static_cast<std::size_t>(width_);
+    TexelSample* row = samples.data() + static_cast<std::size_t>(y - first) * static_cast<std::size_t>(width_);
     for (int x = x_begin; x < x_end; ++x) {
       const double b1 = ((x - t.x[0]) * (t.y[2] - t.y[0]) - (t.x[2] - t.x[0]) * (y - t.y[0])) * t.inverse_area2;
       const double b2 = ((t.x[1] - t.x[0]) * (y - t.y[0]) - (x - t.x[0]) * (t.y[1] - t.y[0])) * t.inverse_area2;
@@ -72,11 +75,15 @@ void UvRaster::fillTriangle(const UvTriangle& t, int begin, int end, std::vector
 
 std::vector<TexelSample> UvRaster::coveredRows(int begin, int end) const {
   std::vector<TexelSample> samples(static_cast<std::size_t>(end - begin) * static_cast<std::size_t>(width_));
-  const auto first = std::lower_bound(first_row_.begin(), first_row_.end(), begin - tallest_);
-  const auto last = std::lower_bound(first_row_.begin(), first_row_.end(), end);
-  for (auto it = first; it < last; ++it) {
-    fillTriangle(triangles_[static_cast<std::size_t>(it - first_row_.begin())], begin, end, samples);
-  }
+  constexpr int kRowsAtOnce = 32;
+  tbb::parallel_for(tbb::blocked_range<int>(begin, end, kRowsAtOnce), [&](const tbb::blocked_range<int>& rows) {
+    const auto first = std::lower_bound(first_row_.begin(), first_row_.end(), rows.begin() - tallest_);
+    const auto last = std::lower_bound(first_row_.begin(), first_row_.end(), rows.end());
+    for (auto it = first; it < last; ++it) {
+      fillTriangle(triangles_[static_cast<std::size_t>(it - first_row_.begin())], rows.begin(), rows.end(), begin,
+                   samples);
+    }
+  });
   return samples;
 }
 

@@ -54,7 +54,8 @@ class UvRaster {
     std::int32_t index;
     bool in_region;
   };
-  void fillTriangle(const UvTriangle& triangle, int begin, int end, std::vector<TexelSample>& samples) const;
+  /// Fills rows [begin, end); samples  from row `first` on
+  void fillTriangle(const UvTriangle& triangle, int begin, int end, int first, std::span<TexelSample> samples) const;
 
   int width_;
   int height_;

@@ -7,6 +7,7 @@
 #include "compress/counter_hash.hpp"
 #include "compress/difference.hpp"
 #include "compress/difference_fit.hpp"
+#include "compress/half_cells.hpp"
 #include "compress/weight_system.hpp"
 #include "compress/weight_window.hpp"
 #include "roof.hpp"
@@ -155,6 +156,60 @@ void weightRelax(benchmark::State& state) {
   setFlopCounters(state, kSweeps * 2.0 * bench.cells() * bench.space.expressions * 9.0 * block);
 }
 
+/// Half cells of the window, with their Gram matrices.
+struct HalfCellBench : FitBench {
+  explicit HalfCellBench(const benchmark::State& state) : FitBench(state), halves(context, space) {
+    halves.moveTo(window.rows());
+    halves.add(band(), tile_at, 1.0);
+    halves.fit(window, kRidge);
+    context.finish();
+  }
+  double halfCells() const { return 4.0 * cells(); }
+  double gramNumbers() const { return space.expressions * (space.expressions + 1) / 2.0; }
+  double gramBytes() const { return halfCells() * gramNumbers() * sizeof(float); }
+  double halfEquationBytes() const {
+    return halfCells() * (static_cast<double>(space.cellFloats()) + pairs()) * sizeof(float);
+  }
+  compress::HalfCells halves;
+};
+
+/// Must move: differences and texel weights in, Gram matrices out. Operations: the root of the weight once, then a
+/// product for each pair of expressions and channel.
+void halfCellGram(benchmark::State& state) {
+  HalfCellBench bench(state);
+  measure(state, [&] {
+    bench.halves.moveTo(bench.window.rows());
+    bench.halves.add(bench.band(), bench.tile_at, 1.0);
+    bench.context.finish();
+  });
+  setBandwidthCounters(state, bench.differenceBytes() + bench.texelWeightBytes() + bench.gramBytes());
+  setFlopCounters(state, bench.texels() * bench.shape.channels * (bench.space.expressions + 2.0 * bench.gramNumbers()));
+}
+
+/// Must move: Gram matrices and weights in, equations out. Operations, for each half cell: the weights' products with
+/// each other and with the Gram matrix, that with the weights again, and two triangles for each expression.
+void halfCellFit(benchmark::State& state) {
+  HalfCellBench bench(state);
+  measure(state, [&] {
+    bench.halves.fit(bench.window, kRidge);
+    bench.context.finish();
+  });
+  setBandwidthCounters(state, bench.gramBytes() + bench.weightBytes() + bench.halfEquationBytes());
+  const double c = bench.space.textures;
+  const double n = bench.space.expressions;
+  setFlopCounters(state, 2.0 * bench.halfCells() * n * (2.0 * bench.pairs() + c * n + c * c));
+}
+
+/// Must move: the equations of the half cells in, those of the cells out.
+void halfCellGather(benchmark::State& state) {
+  HalfCellBench bench(state);
+  measure(state, [&] {
+    bench.system.gather(bench.halves, bench.window);
+    bench.context.finish();
+  });
+  setBandwidthCounters(state, bench.halfEquationBytes() + bench.systemBytes());
+}
+
 void arguments(benchmark::internal::Benchmark* row) {
   row->ArgNames({"R", "N", "C"})->UseManualTime()->Unit(benchmark::kMillisecond);
   row->Args({1024, 20, 4})->Args({1024, 52, 4});
@@ -163,6 +218,9 @@ BENCHMARK(differenceFit)->Name("difference_fit")->Apply(arguments);
 BENCHMARK(differenceFitRounded)->Name("difference_fit_rounded")->Apply(arguments);
 BENCHMARK(weightSystem)->Name("weight_system")->Apply(arguments);
 BENCHMARK(weightSystemGather)->Name("weight_system_gather")->Apply(arguments);
+BENCHMARK(halfCellGram)->Name("half_cell_gram")->Apply(arguments);
+BENCHMARK(halfCellFit)->Name("half_cell_fit")->Apply(arguments);
+BENCHMARK(halfCellGather)->Name("half_cell_gather")->Apply(arguments);
 BENCHMARK(weightRelax)->Name("weight_relax")->Apply(arguments);
 
 }  // namespace

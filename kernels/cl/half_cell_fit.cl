@@ -14,21 +14,42 @@
 #define PAIR(i, j) ((i) * ((i) + 1) / 2 + (j))  // j <= i
 #define GRAM(n, m) grams[(m) * ((m) + 1) / 2 + (n)]  // n <= m
 
+// Rows become lanes: four times, the first half of the rows is woven with the second.
+static void transpose(float16 rows[16]) {
+#pragma unroll
+  for (int stage = 0; stage < 4; ++stage) {
+    float16 woven[16];
+#pragma unroll
+    for (int k = 0; k < 8; ++k) {
+      const float16 a = rows[k];
+      const float16 b = rows[k + 8];
+      woven[2 * k].even = a.lo;
+      woven[2 * k].odd = b.lo;
+      woven[2 * k + 1].even = a.hi;
+      woven[2 * k + 1].odd = b.hi;
+    }
+#pragma unroll
+    for (int k = 0; k < 16; ++k) rows[k] = woven[k];
+  }
+}
+
 // Weights of 16 half cells, a quarter of a cell from the centre of their own cell towards the next: [C][N], lane by lane.
 static void interpolate(global const float16* restrict own_row, global const float16* restrict next_row,
-                        const int first_half, const int columns, float weights[TEXTURES * EXPRESSION_LANES * 16]) {
+                        const int first_half, const int columns, float16 weights[TEXTURES * EXPRESSION_LANES]) {
   const int vectors = TEXTURES * EXPRESSION_LANES / 16;
-  for (int lane = 0; lane < 16; ++lane) {
-    const int half_column = first_half + lane;
-    const int own = min(half_column / 2, columns - 1);
-    const int next = clamp(own + (half_column % 2 ? 1 : -1), 0, columns - 1);
-    for (int v = 0; v < vectors; ++v) {
-      const float16 value = 0.5625f * own_row[own * vectors + v] + 0.0625f * next_row[next * vectors + v] +
-                            0.1875f * (own_row[next * vectors + v] + next_row[own * vectors + v]);
-      float values[16];
-      vstore16(value, 0, values);
-      for (int k = 0; k < 16; ++k) weights[(v * 16 + k) * 16 + lane] = values[k];
+  for (int v = 0; v < vectors; ++v) {
+    float16 values[16];
+#pragma unroll
+    for (int lane = 0; lane < 16; ++lane) {
+      const int half_column = first_half + lane;
+      const int own = min(half_column / 2, columns - 1);
+      const int next = clamp(own + (half_column % 2 ? 1 : -1), 0, columns - 1);
+      values[lane] = 0.5625f * own_row[own * vectors + v] + 0.0625f * next_row[next * vectors + v] +
+                     0.1875f * (own_row[next * vectors + v] + next_row[own * vectors + v]);
     }
+    transpose(values);
+#pragma unroll
+    for (int k = 0; k < 16; ++k) weights[v * 16 + k] = values[k];
   }
 }
 
@@ -100,7 +121,7 @@ static void surround(const float16 l[PAIRS], const float16 middle[PAIRS], float1
 }
 
 kernel __attribute__((reqd_work_group_size(1, 1, 1))) void half_cell_fit(
-    global const float16* restrict grams, global const float16* restrict weights, global float* restrict halves,
+    global const float16* restrict grams, global const float16* restrict weights, global float16* restrict halves,
     global float* restrict errors, const int first_half_row, const int first_cell_row, const int cell_columns,
     const int cell_rows, const float ridge) {
   const int group = (int)get_global_id(0);
@@ -108,12 +129,12 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void half_cell_fit(
   const int half_row = (int)get_global_id(1);
   const ulong item = (ulong)half_row * groups + group;
   grams += item * (EXPRESSIONS * (EXPRESSIONS + 1) / 2);
-  halves += item * (ulong)(16 * HALF_ENTRIES);
+  halves += item * (ulong)HALF_ENTRIES;
 
   float16 trace = 0.0f;
   for (int n = 0; n < EXPRESSIONS; ++n) trace += GRAM(n, n);
   if (sum_of_16(trace) == 0.0f) {  // no covered texel that ever changes
-    for (int e = 0; e < 16 * HALF_ENTRIES; ++e) halves[e] = 0.0f;
+    for (int e = 0; e < HALF_ENTRIES; ++e) halves[e] = 0.0f;
     errors[item] = 0.0f;
     return;
   }
@@ -123,7 +144,7 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void half_cell_fit(
   const int next_row = clamp(own_row + ((first_half_row + half_row) % 2 ? 1 : -1), 0, cell_rows - 1);
   const ulong row_vectors = (ulong)cell_columns * (TEXTURES * EXPRESSION_LANES / 16);
   interpolate(weights + (own_row - first_cell_row) * row_vectors, weights + (next_row - first_cell_row) * row_vectors,
-              group * 16, cell_columns, (float*)w);
+              group * 16, cell_columns, w);
 
   float16 a[PAIRS];
   float16 l[PAIRS];
@@ -168,9 +189,13 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void half_cell_fit(
 #pragma unroll
     for (int j = 0; j <= i; ++j) error += (i == j ? 1.0f : 2.0f) * results[PAIR(i, j)] * a[PAIR(i, j)];
   }
-  const float* values = (const float*)results;
-  for (int lane = 0; lane < 16; ++lane) {
-    for (int e = 0; e < HALF_ENTRIES; ++e) halves[lane * HALF_ENTRIES + e] = values[e * 16 + lane];
+  for (int v = 0; v < HALF_ENTRIES / 16; ++v) {
+    float16 entries[16];
+#pragma unroll
+    for (int k = 0; k < 16; ++k) entries[k] = results[v * 16 + k];
+    transpose(entries);
+#pragma unroll
+    for (int lane = 0; lane < 16; ++lane) halves[lane * (HALF_ENTRIES / 16) + v] = entries[lane];
   }
   errors[item] = sum_of_16(fmax(error, (float16)(0.0f)));
 }

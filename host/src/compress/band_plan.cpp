@@ -15,8 +15,8 @@ constexpr std::uint64_t kMiB = 1u << 20;
 /// What a process holds before the first texel: OpenCL's compiler, image libraries, the mesh and its factorisation; and
 /// the Gram stage's partial sums. Measured with PoCL 3.1 (about 190 MiB) and rounded up.
 constexpr std::uint64_t kProcessBytes = 256 * kMiB;
-/// Bands beyond this gain nothing: launches are already cheap beside the work, and caches grow cold.
-constexpr std::uint64_t kUsefulBandBytes = 96 * kMiB;
+/// A window of the refinement also computes on the rows of tiles above and below it: larger ones have less of those.
+constexpr std::uint64_t kUsefulWindowBytes = 192 * kMiB;
 constexpr int kTypicalMasksPerTile = 16;
 
 /// What a window of the refinement keeps of one map, per row of its image.
@@ -76,7 +76,7 @@ int planBandRows(const BandCost& cost, int height, std::uint64_t memory_bytes, s
   const std::uint64_t within_memory = (memory_bytes - beside) / cost.per_row;
   const std::uint64_t within_device = std::min(device.global_memory_bytes / 2 / cost.per_row,
                                                device.largest_allocation_bytes / cost.largest_buffer_per_row);
-  const std::uint64_t rows = std::min({within_memory, within_device, kUsefulBandBytes / cost.per_row});
+  const std::uint64_t rows = std::min({within_memory, within_device, cost.useful_bytes / cost.per_row});
   const auto needed = static_cast<std::uint64_t>((height + kTileSide - 1) / kTileSide * kTileSide);
   return static_cast<int>(std::clamp<std::uint64_t>(rows / kTileSide * kTileSide, kTileSide, needed));
 }
@@ -84,6 +84,7 @@ int planBandRows(const BandCost& cost, int height, std::uint64_t memory_bytes, s
 int planWindowRows(std::span<OpenMap* const> maps, const WeightSpace& space, bool half_cells,
                    std::uint64_t memory_bytes, std::uint64_t resident_bytes, const DeviceInfo& device) {
   BandCost cost;  // per row of the finest map
+  cost.useful_bytes = kUsefulWindowBytes;
   const OpenMap* finest = maps.front();
   for (const OpenMap* map : maps) {
     if (map->weight_scale > finest->weight_scale) finest = map;

@@ -15,6 +15,8 @@ namespace facezip::compress {
 struct BandCost {
   std::uint64_t per_row = 0;
   std::uint64_t largest_buffer_per_row = 0;  ///< of the buffers on the device
+  /// Bands beyond this gain nothing: launches are already cheap beside the work, and caches grow cold.
+  std::uint64_t useful_bytes = 96u << 20;
 };
 
 /// shape       of the map; its rows are ignored

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <future>
 #include <limits>
 #include <utility>
 
@@ -102,11 +103,15 @@ double bestBound(const SeamTables& tables, const PermutationSolverOptions& optio
 
 PermutationSolution solvePermutation(const SeamTables& tables, const PermutationSolverOptions& options) {
   PermutationSolution solution;
+  std::future<PermutationSearch> descent;  // beside the messages, which keep one thread busy
+  if (options.solver != PermutationSolver::kMessagePassing) {
+    descent = std::async(std::launch::async, [&] { return searchPermutation(tables, options.descent); });
+  }
   Incumbent incumbent(tables);
   incumbent.offerGrown();
   solution.bound = bestBound(tables, options, incumbent, solution.bounds);
-  if (options.solver != PermutationSolver::kMessagePassing) {
-    solution.descent = searchPermutation(tables, options.descent);
+  if (descent.valid()) {
+    solution.descent = descent.get();
     solution.best = solution.descent.best;
   }
   solution.by_descent = options.solver == PermutationSolver::kDescent ||

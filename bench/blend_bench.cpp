@@ -22,10 +22,12 @@ std::vector<std::byte> hashedBytes(std::size_t count) {
   return bytes;
 }
 
-blend::WeightMaps makeWeights(int cells, int expressions) {
+using device::KernelVariant;
+
+blend::WeightMaps makeWeights(int cells, int expressions, KernelVariant variant = KernelVariant::kAuto) {
   const blend::WeightGrid grid{cells, cells, expressions, std::vector<double>(4, 1.0 / 255.0),
                                std::vector<double>(4, 0.0)};
-  return blend::WeightMaps(benchDevice(), grid, hashedBytes(grid.codeBytes()));
+  return blend::WeightMaps(benchDevice(), grid, hashedBytes(grid.codeBytes()), variant);
 }
 
 std::vector<float> everyWeight(int expressions) {
@@ -36,7 +38,8 @@ std::vector<float> everyWeight(int expressions) {
 
 /// Textures of a whole square map, and the blended weights they are sampled with.
 struct Scene {
-  Scene(int side, int channels, image::SampleType type, int difference_bits)
+  Scene(int side, int channels, image::SampleType type, int difference_bits, int expressions = 52,
+        KernelVariant variant = KernelVariant::kAuto)
       : shape{side,
               channels,
               4,
@@ -45,15 +48,15 @@ struct Scene {
               8,
               std::vector<float>(static_cast<std::size_t>(4 * channels), 1.0f),
               std::vector<float>(static_cast<std::size_t>(4 * channels), 128.0f)},
-        weights(makeWeights(side / 8, 52)),
-        textures(benchDevice(), shape, side, side / 8, side / 8) {
+        weights(makeWeights(side / 8, expressions)),
+        textures(benchDevice(), shape, side, side / 8, side / 8, variant) {
     const std::size_t rows = static_cast<std::size_t>(side);
     std::vector<std::byte> neutral = hashedBytes(rows * shape.rowBytes());
     if (type == image::SampleType::kFloat32) std::fill(neutral.begin(), neutral.end(), std::byte{0});
     const std::vector<std::byte> codes = hashedBytes(rows * shape.differenceRowBytes());
     textures.setRows(0, side);
     textures.load(0, side, neutral, std::vector<std::span<const std::byte>>(4, codes));
-    weights.blend(everyWeight(52));
+    weights.blend(everyWeight(expressions));
     benchDevice().finish();
   }
 
@@ -68,8 +71,9 @@ struct Scene {
   blend::TextureRows textures;
 };
 
-void blendKernel(benchmark::State& state, int channels, image::SampleType type, int difference_bits = 8) {
-  Scene scene(static_cast<int>(state.range(0)), channels, type, difference_bits);
+void blendKernel(benchmark::State& state, int channels, image::SampleType type, int difference_bits = 8,
+                 KernelVariant variant = KernelVariant::kAuto) {
+  Scene scene(static_cast<int>(state.range(0)), channels, type, difference_bits, 52, variant);
   const cl::Buffer frame = benchDevice().allocate(scene.textures.frameBytes(), CL_MEM_WRITE_ONLY, "frame");
   measure(state, [&] {
     scene.textures.enqueue(scene.weights.weights(), frame);
@@ -103,9 +107,27 @@ void wholeFrame(benchmark::State& state, int channels, image::SampleType type) {
   setBandwidthCounters(state, scene.bytes());
 }
 
-void weightBlend(benchmark::State& state) {
+/// What of a frame is timed beside a memcpy of the bytes that it must move.
+enum class Part { kKernel, kWeightsAndKernel, kWholeFrame };
+
+/// Arguments: side, N. kWholeFrame is what a caller gets: new weights, the kernel, rows in the caller's memory.
+void frameBesideMemcpy(benchmark::State& state, Part part) {
+  Scene scene(static_cast<int>(state.range(0)), 3, image::SampleType::kUint8, 8, static_cast<int>(state.range(1)));
+  const std::vector<float> beta = everyWeight(static_cast<int>(state.range(1)));
+  const cl::Buffer frame = benchDevice().allocate(scene.textures.frameBytes(), CL_MEM_WRITE_ONLY, "frame");
+  std::vector<std::byte> out(static_cast<std::size_t>(scene.shape.width) * scene.shape.rowBytes());
+  measureBesideMemcpy(state, scene.bytes(), [&] {
+    if (part != Part::kKernel) scene.weights.blend(beta);
+    if (part == Part::kWholeFrame) return scene.textures.blend(scene.weights.weights(), out);
+    scene.textures.enqueue(scene.weights.weights(), frame);
+    benchDevice().finish();
+  });
+  setBandwidthCounters(state, scene.bytes());
+}
+
+void weightBlend(benchmark::State& state, KernelVariant variant) {
   const int cells = static_cast<int>(state.range(0)), expressions = static_cast<int>(state.range(1));
-  blend::WeightMaps weights = makeWeights(cells, expressions);
+  blend::WeightMaps weights = makeWeights(cells, expressions, variant);
   const std::vector<float> beta = everyWeight(expressions);
   measure(state, [&] {
     weights.blend(beta);
@@ -115,47 +137,35 @@ void weightBlend(benchmark::State& state) {
   setBandwidthCounters(state, outputs * (expressions + static_cast<double>(sizeof(float))));
 }
 
-BENCHMARK_CAPTURE(blendKernel, rgb8, 3, image::SampleType::kUint8)
-    ->Arg(1024)
-    ->Arg(2048)
-    ->Arg(4096)
-    ->UseManualTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(blendKernel, rgba8, 4, image::SampleType::kUint8)
-    ->Arg(2048)
-    ->UseManualTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(blendKernel, grey8, 1, image::SampleType::kUint8)
-    ->Arg(2048)
-    ->UseManualTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(blendKernel, rgb16, 3, image::SampleType::kUint16)
-    ->Arg(2048)
-    ->UseManualTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(blendKernel, rgb_float, 3, image::SampleType::kFloat32)
-    ->Arg(2048)
-    ->UseManualTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(blendKernel, rgb8_differences16, 3, image::SampleType::kUint8, 16)
-    ->Arg(2048)
-    ->UseManualTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(blendValuesKernel, rgb8, 3, image::SampleType::kUint8)
-    ->Arg(2048)
-    ->UseManualTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(wholeFrame, rgb8, 3, image::SampleType::kUint8)
-    ->Arg(1024)
-    ->Arg(2048)
-    ->UseManualTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK(weightBlend)
-    ->ArgNames({"cells", "N"})
+void milliseconds(benchmark::internal::Benchmark* row) { row->UseManualTime()->Unit(benchmark::kMillisecond); }
+void besideMemcpy(benchmark::internal::Benchmark* row) { row->ArgNames({"side", "N"})->Args({2048, 52}); }
+
+constexpr auto kUint8 = image::SampleType::kUint8;
+BENCHMARK_CAPTURE(blendKernel, rgb8, 3, kUint8)->RangeMultiplier(2)->Range(256, 4096)->Apply(milliseconds);
+BENCHMARK_CAPTURE(blendKernel, rgb8_gpu, 3, kUint8, 8, KernelVariant::kGpu)->Arg(512)->Apply(milliseconds);
+BENCHMARK_CAPTURE(blendKernel, rgba8, 4, kUint8)->Arg(2048)->Apply(milliseconds);
+BENCHMARK_CAPTURE(blendKernel, grey8, 1, kUint8)->Arg(2048)->Apply(milliseconds);
+BENCHMARK_CAPTURE(blendKernel, rgb16, 3, image::SampleType::kUint16)->Arg(2048)->Apply(milliseconds);
+BENCHMARK_CAPTURE(blendKernel, rgb_float, 3, image::SampleType::kFloat32)->Arg(2048)->Apply(milliseconds);
+BENCHMARK_CAPTURE(blendKernel, rgb8_differences16, 3, kUint8, 16)->Arg(2048)->Apply(milliseconds);
+BENCHMARK_CAPTURE(blendValuesKernel, rgb8, 3, kUint8)->Arg(2048)->Apply(milliseconds);
+BENCHMARK_CAPTURE(wholeFrame, rgb8, 3, kUint8)->Arg(1024)->Arg(2048)->Apply(milliseconds);
+BENCHMARK_CAPTURE(frameBesideMemcpy, kernel, Part::kKernel)->Apply(besideMemcpy)->Apply(milliseconds);
+BENCHMARK_CAPTURE(frameBesideMemcpy, weights_and_kernel, Part::kWeightsAndKernel)
+    ->Apply(besideMemcpy)
+    ->Apply(milliseconds);
+BENCHMARK_CAPTURE(frameBesideMemcpy, whole_frame, Part::kWholeFrame)->Apply(besideMemcpy)->Apply(milliseconds);
+
+void grids(benchmark::internal::Benchmark* row) { row->ArgNames({"cells", "N"})->Apply(milliseconds); }
+BENCHMARK_CAPTURE(weightBlend, cpu, KernelVariant::kCpu)
+    ->Apply(grids)
+    ->Args({32, 20})
+    ->Args({128, 8})
     ->Args({128, 20})
     ->Args({256, 52})
-    ->UseManualTime()
-    ->Unit(benchmark::kMillisecond);
+    ->Args({256, 100})
+    ->Args({512, 20});
+BENCHMARK_CAPTURE(weightBlend, gpu, KernelVariant::kGpu)->Apply(grids)->Args({128, 20});
 
 }  // namespace
 }  // namespace facezip::bench

@@ -1,9 +1,14 @@
 #include "roof.hpp"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <chrono>
+#include <cstring>
 #include <limits>
 #include <string>
+#include <vector>
 
 namespace facezip::bench {
 namespace {
@@ -36,6 +41,12 @@ double secondsOf(const std::function<void()>& step) {
   const auto start = std::chrono::steady_clock::now();
   step();
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 double bestOf(int tries, const std::function<void()>& step) {
@@ -110,6 +121,30 @@ void measure(benchmark::State& state, const std::function<void()>& step) {
     best = std::min(best, seconds);
   }
   state.counters["best_ms"] = best * 1e3;
+}
+
+void measureBesideMemcpy(benchmark::State& state, double bytes, const std::function<void()>& step) {
+  const auto half = static_cast<std::size_t>(bytes / 2.0);
+  const std::vector<char> from(half, 1);
+  std::vector<char> to(half);
+  const auto copy = [&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, half, std::size_t{1} << 18), [&](const auto& range) {
+      std::memcpy(to.data() + range.begin(), from.data() + range.begin(), range.size());
+    });
+  };
+  copy();
+  std::vector<double> ratios;
+  step();  // builds the kernels and touches the buffers
+  double best = std::numeric_limits<double>::infinity();
+  for (auto _ : state) {
+    const double copying = secondsOf(copy);
+    const double seconds = secondsOf(step);
+    state.SetIterationTime(seconds);
+    best = std::min(best, seconds);
+    ratios.push_back(copying / seconds);
+  }
+  state.counters["best_ms"] = best * 1e3;
+  state.counters["of_memcpy"] = median(ratios);
 }
 
 void setBandwidthCounters(benchmark::State& state, double bytes_per_iteration) {

@@ -26,6 +26,11 @@ const Roof& roof();
 /// since other work on the machine only ever adds time. Register the benchmark with UseManualTime().
 void measure(benchmark::State& state, const std::function<void()>& step);
 
+/// The same, each iteration beside a copy of the bytes that it must read and write: half of them read, half written, by
+/// memcpy in as many threads as the machine has. Counter "of_memcpy" is the median over iterations of the copy's time
+/// over the step's, which other work on the machine moves least.
+void measureBesideMemcpy(benchmark::State& state, double bytes, const std::function<void()>& step);
+
 /// To be called after the loop. Counters "GB/s" and "of_copy" (fraction of the roof) from the bytes that one iteration
 /// must read and write.
 void setBandwidthCounters(benchmark::State& state, double bytes_per_iteration);

@@ -16,10 +16,11 @@
 // Buffers   textures  in   [tile][row 8][TILE_ROW_BYTES]: neutral [channel][16] SAMPLE, then from TILE_CODES_OFFSET on
 //                          codes [C][channel][16] CODE, then padding; both aligned for vector loads; tiles row-major
 //           weights   in   [cell / 16][C][16]         float  weight_blend.cl's output
-//           encoding  in   [2][C][channels]           float  scale_ic in steps of a sample, then zero_ic
+//           encoding  in   [3][C][channels]           float  scale_ic in steps of a sample, zero_ic, -scale_ic * zero_ic
 //           frame     out  [8 * tile rows][16 * tiles_x][channels] FRAME  interleaved
 // Defines   CHANNELS 1..4, DIFFERENCES 1..8, SCALE s >= 1, LANES 16 (CPU) or 1 (GPU),
 //           SAMPLE_TYPE 0 uchar, 1 ushort, 2 float; CODE_BITS 8 or 16; TILE_CODES_OFFSET, TILE_ROW_BYTES
+//           PREFETCH_TILES 0: none; n: textures n tiles ahead are asked for, where the compiler is clang (PoCL)
 //           VALUES 0: FRAME is SAMPLE; 1: FRAME is float, T in 1/255 of full scale as it is before rounding
 // Rounding  integers: half up, clamped to the type; floats: neither, and I_0 is copied where the sum is 0;
 //           values: neither, exact where the sum is 0 in 8 bits
@@ -42,6 +43,9 @@
 #ifndef VALUES
 #define VALUES 0
 #endif
+#ifndef PREFETCH_TILES
+#define PREFETCH_TILES 0
+#endif
 #ifndef CODE_BITS
 #define CODE_BITS 8
 #endif
@@ -52,6 +56,7 @@
 
 #define TILE_WIDTH 16
 #define TILE_ROWS 8
+#define PLANES (DIFFERENCES * CHANNELS)
 // Cells touched by 16 columns and by 8 rows of texels, wherever the tile lies.
 #define CELL_COLUMNS ((TILE_WIDTH - 1) / SCALE + 3)
 #define CELL_ROWS ((TILE_ROWS - 1) / SCALE + 3)
@@ -100,6 +105,16 @@ typedef floats results;
 typedef VECTOR(uint) results;
 #endif
 
+// Frames that are rounded are bound by arithmetic: rounding's half starts the sum, and a difference is one multiply-add,
+// off by 1e-5 of a step at most where it should be 0. The others have to be exact there.
+#if FRAME_TYPE == 2
+#define START(neutral) ((floats)(0.0f))
+#define DIFFERENCE(code, plane) (((code)-encoding[PLANES + (plane)]) * encoding[plane])
+#else
+#define START(neutral) ((neutral) + 0.5f)
+#define DIFFERENCE(code, plane) fma(code, (floats)(encoding[plane]), (floats)(encoding[2 * PLANES + (plane)]))
+#endif
+
 inline results finish(const floats neutral, const floats sum) {
 #if VALUES
   return (neutral + sum) * UNIT_255;
@@ -107,7 +122,7 @@ inline results finish(const floats neutral, const floats sum) {
   return sum == (floats)(0.0f) ? neutral : neutral + sum;  // -0 and denormals of the neutral survive
 #else
   // Not convert_*_sat_rte: it costs a third of the whole blend on PoCL.
-  return JOIN(convert_, VECTOR(uint))(clamp(neutral + sum + 0.5f, 0.0f, SAMPLE_MAX));
+  return JOIN(convert_, VECTOR(uint))(clamp(sum, 0.0f, SAMPLE_MAX));
 #endif
 }
 
@@ -226,19 +241,26 @@ kernel void blend(global const uchar* restrict textures, global const float* res
 #pragma unroll
     for (int i = 0; i < DIFFERENCES; ++i) w[i] = fma(h[above + 1][i] - h[above][i], fraction, h[above][i]);
 
+#if PREFETCH_TILES
+    // Arithmetic keeps a core from running ahead into the next tiles by itself: a fifth of the time was waiting.
+#pragma unroll
+    for (int byte = 0; byte < TILE_ROW_BYTES; byte += 64) {
+      __builtin_prefetch((const void*)(size_t)(texels + PREFETCH_TILES * TILE_ROWS * TILE_ROW_BYTES + byte));
+    }
+#endif
     global const CODE* difference = (global const CODE*)(texels + TILE_CODES_OFFSET) + lane;
     results value[CHANNELS];
 #pragma unroll
     for (int c = 0; c < CHANNELS; ++c) {
-      floats sum = 0.0f;
+      const floats neutral = TO_FLOATS(*(global const samples*)((global const SAMPLE*)texels + (16 * c + lane)));
+      floats sum = START(neutral);
 #pragma unroll
       for (int i = 0; i < DIFFERENCES; ++i) {
         const int plane = i * CHANNELS + c;
         const floats code = TO_FLOATS(*(global const codes*)(difference + 16 * plane));
-        sum = fma((code - encoding[DIFFERENCES * CHANNELS + plane]) * encoding[plane], w[i], sum);
+        sum = fma(DIFFERENCE(code, plane), w[i], sum);
       }
-      const samples neutral = *(global const samples*)((global const SAMPLE*)texels + (16 * c + lane));
-      value[c] = finish(TO_FLOATS(neutral), sum);
+      value[c] = finish(neutral, sum);
     }
     store(out, value);
     texels += TILE_ROW_BYTES;

@@ -9,6 +9,7 @@
 //           weights   out  [blocks][C][16]    float
 // Defines   LANES        16 on CPUs (one AVX-512 register), 1 on GPUs (neighbouring work-items read neighbouring bytes)
 //           DIFFERENCES  C, 1..8
+//           PREFETCH     1: codes are asked for a block ahead, where the compiler is clang (PoCL)
 // Sums      in rising n: same bits whichever range of blocks is asked for
 
 #ifndef LANES
@@ -16,6 +17,10 @@
 #endif
 #ifndef DIFFERENCES
 #define DIFFERENCES 4
+#endif
+
+#ifndef PREFETCH
+#define PREFETCH 0
 #endif
 
 #if LANES == 1
@@ -42,6 +47,11 @@ kernel void weight_blend(global const uchar* restrict codes, global const int* r
   for (int a = 0; a < count; ++a) {
     const float weight = beta[a];
     global const uchar* code = codes + ((block * (ulong)expressions + (ulong)active[a]) * DIFFERENCES * 16 + lane);
+#if PREFETCH
+    for (int byte = 0; byte < DIFFERENCES * 16; byte += 64) {
+      __builtin_prefetch((const void*)(size_t)(code + expressions * DIFFERENCES * 16 + byte));
+    }
+#endif
     for (int i = 0; i < DIFFERENCES; ++i) {
       sum[i] = fma(TO_FLOATS(*(global const bytes*)(code + 16 * i)), weight, sum[i]);
     }

@@ -46,15 +46,17 @@ void splitRowOf(std::size_t bytes, const TextureShape& shape, const std::byte* r
 std::vector<float> encodingOf(const TextureShape& shape) {
   std::vector<float> encoding = shape.scale;
   encoding.insert(encoding.end(), shape.zero.begin(), shape.zero.end());
+  for (std::size_t i = 0; i < shape.scale.size(); ++i) encoding.push_back(-shape.scale[i] * shape.zero[i]);
   return encoding;
 }
 
-std::string definesOf(const TextureShape& shape, bool gpu, FrameForm form) {
+std::string definesOf(const TextureShape& shape, const DeviceInfo& device, bool gpu, FrameForm form) {
   return fmt::format(
       "-D LANES={} -D CHANNELS={} -D DIFFERENCES={} -D SCALE={} -D SAMPLE_TYPE={} -D CODE_BITS={} "
-      "-D TILE_CODES_OFFSET={} -D TILE_ROW_BYTES={} -D VALUES={}",
+      "-D TILE_CODES_OFFSET={} -D TILE_ROW_BYTES={} -D VALUES={} -D PREFETCH_TILES={}",
       gpu ? 1 : kTileWidth, shape.channels, shape.differences, shape.weight_scale, static_cast<int>(shape.sample_type),
-      shape.difference_bits, shape.tileCodesOffset(), shape.tileRowBytes(), form == FrameForm::kValues ? 1 : 0);
+      shape.difference_bits, shape.tileCodesOffset(), shape.tileRowBytes(), form == FrameForm::kValues ? 1 : 0,
+      prefetches(device, gpu) ? 2 : 0);
 }
 
 int floorDivide(int numerator, int denominator) {
@@ -91,7 +93,7 @@ TextureRows::TextureRows(device::DeviceContext& context, TextureShape shape, int
 TextureRows::Output& TextureRows::output(FrameForm form) {
   Output& output = outputs_[static_cast<std::size_t>(form)];
   if (output.kernel() == nullptr) {
-    output.kernel = context_.kernel("blend.cl", "blend", definesOf(shape_, gpu_, form));
+    output.kernel = context_.kernel("blend.cl", "blend", definesOf(shape_, context_.info(), gpu_, form));
     output.local_size = context_.workGroupSize(output.kernel, gpu_ ? 64 : 16);
     output.kernel.setArg(0, textures_);
     output.kernel.setArg(2, encoding_);

@@ -17,7 +17,8 @@ WeightMaps::WeightMaps(device::DeviceContext& context, WeightGrid grid, std::spa
   const bool gpu = context.resolve(variant) == device::KernelVariant::kGpu;
   items_per_block_ = gpu ? 16 : 1;
   kernel_ = context.kernel("weight_blend.cl", "weight_blend",
-                           fmt::format("-D LANES={} -D DIFFERENCES={}", gpu ? 1 : 16, grid_.channels()));
+                           fmt::format("-D LANES={} -D DIFFERENCES={} -D PREFETCH={}", gpu ? 1 : 16, grid_.channels(),
+                                       prefetches(context.info(), gpu) ? 1 : 0));
   local_size_ = context.workGroupSize(kernel_, gpu ? 64 : 16);
   const std::size_t expressions = static_cast<std::size_t>(grid_.expressions);
   const std::size_t channels = static_cast<std::size_t>(grid_.channels());
@@ -68,6 +69,8 @@ cl::Event WeightMaps::blend(std::span<const float> beta, int begin_row, int end_
   const std::size_t items = (end_block - first_block) * items_per_block_;
   return context_.run(kernel_, cl::NDRange(device::roundUp(items, local_size_)), cl::NDRange(local_size_));
 }
+
+bool prefetches(const DeviceInfo& device, bool gpu) { return !gpu && device.platform == "Portable Computing Language"; }
 
 void requireWeights(std::span<const float> beta, std::span<const std::string> names) {
   if (beta.size() != names.size()) {

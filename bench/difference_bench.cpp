@@ -24,7 +24,16 @@ void difference(benchmark::State& state) {
   });
   setBandwidthCounters(state, static_cast<double>(shape.sampleBytes() + bytes));
 }
-BENCHMARK(difference)->ArgNames({"R", "N"})->Args({1024, 20})->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(difference)
+    ->ArgNames({"R", "N"})
+    ->Args({256, 20})
+    ->Args({1024, 8})
+    ->Args({1024, 20})
+    ->Args({1024, 100})
+    ->Args({2048, 20})
+    ->Args({4096, 8})
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace facezip::bench

@@ -87,7 +87,9 @@ void differenceTextureEncode(benchmark::State& state) {
 }
 
 void arguments(benchmark::internal::Benchmark* row) {
-  row->ArgNames({"R", "N", "K"})->Args({1024, 20, 53})->UseManualTime()->Unit(benchmark::kMillisecond);
+  row->ArgNames({"R", "N", "K"})->UseManualTime()->Unit(benchmark::kMillisecond);
+  row->Args({256, 20, 53})->Args({1024, 20, 53})->Args({2048, 8, 53});
+  row->Args({1024, 20, 16})->Args({1024, 20, 128})->Args({512, 100, 53});
 }
 BENCHMARK(differenceTexture)->Name("difference_texture")->Apply(arguments);
 BENCHMARK(differenceTextureRange)->Name("difference_texture_range")->Apply(arguments);

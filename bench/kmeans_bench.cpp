@@ -50,9 +50,11 @@ void clusterFragments(benchmark::State& state) {
 
 void sizes(benchmark::internal::Benchmark* row) {
   row->ArgNames({"N", "K", "restarts"})
+      ->Args({8, 16, 64})
       ->Args({20, 53, 64})
       ->Args({20, 53, 256})
       ->Args({52, 53, 64})
+      ->Args({100, 128, 64})
       ->Args({128, 200, 64});
   row->UseManualTime()->Unit(benchmark::kMillisecond);
 }

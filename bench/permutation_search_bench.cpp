@@ -19,8 +19,10 @@ void permutationSearch(benchmark::State& state) {
 BENCHMARK(permutationSearch)
     ->Name("permutation_search")
     ->ArgNames({"K", "C"})
+    ->Args({16, 4})
     ->Args({53, 4})
     ->Args({53, 8})
+    ->Args({128, 4})
     ->Args({200, 4})
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond);

@@ -23,8 +23,10 @@ void seamCost(benchmark::State& state) {
 BENCHMARK(seamCost)
     ->Name("seam_cost")
     ->ArgNames({"N", "K", "reach"})
+    ->Args({8, 16, 9})
     ->Args({20, 53, 9})
     ->Args({52, 53, 9})
+    ->Args({100, 128, 9})
     ->Args({128, 200, 10})
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond);

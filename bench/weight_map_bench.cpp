@@ -22,16 +22,16 @@ compress::CellMasks makeCells(std::size_t count, int masks) {
   return cells;
 }
 
-/// Arguments: side of the weight map, N. The kernel alone; must move: the masks of the cells once in, the bytes once
+/// Arguments: side of the weight map, N, K. The kernel alone; must move: the masks of the cells once in, the bytes once
 /// out.
 void weightMap(benchmark::State& state) {
-  constexpr int kMasks = 53, kClusters = 4;
+  constexpr int kClusters = 4;
   device::DeviceContext& context = benchDevice();
   const auto cells = static_cast<std::size_t>(state.range(0) * state.range(0));
-  const int expressions = static_cast<int>(state.range(1));
-  const compress::CellMasks masks = makeCells(cells, kMasks);
+  const int expressions = static_cast<int>(state.range(1)), mask_count = static_cast<int>(state.range(2));
+  const compress::CellMasks masks = makeCells(cells, mask_count);
   std::vector<int> texture_of;
-  for (int i = 0; i < kMasks * expressions; ++i) {
+  for (int i = 0; i < mask_count * expressions; ++i) {
     texture_of.push_back(static_cast<int>(compress::counterHash(1, static_cast<std::uint64_t>(i), 0, 0) % kClusters));
   }
   const std::size_t bytes = cells * static_cast<std::size_t>(expressions) * kClusters;
@@ -43,7 +43,7 @@ void weightMap(benchmark::State& state) {
       .cell_begin = context.upload(masks.cell_begin, "cells"),
       .mask_index = context.upload(masks.mask_index, "masks"),
       .mask_weights = context.upload(masks.mask_weights, "weights"),
-      .texture_of = context.upload(compress::packTextureOf(texture_of, kMasks, expressions), "textures"),
+      .texture_of = context.upload(compress::packTextureOf(texture_of, mask_count, expressions), "textures"),
       .weights = context.allocate(bytes, CL_MEM_WRITE_ONLY, "weight maps")};
   measure(state, [&] {
     compress::launchWeightMap(context, launch);
@@ -53,9 +53,13 @@ void weightMap(benchmark::State& state) {
 }
 BENCHMARK(weightMap)
     ->Name("weight_map")
-    ->ArgNames({"side", "N"})
-    ->Args({128, 20})
-    ->Args({256, 52})
+    ->ArgNames({"side", "N", "K"})
+    ->Args({32, 20, 53})
+    ->Args({128, 8, 16})
+    ->Args({128, 20, 53})
+    ->Args({256, 52, 53})
+    ->Args({256, 100, 128})
+    ->Args({512, 8, 53})
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond);
 

@@ -16,21 +16,23 @@
 namespace facezip::bench {
 namespace {
 
+using device::KernelVariant;
+
 constexpr int kWeightScale = 8;
 constexpr int kSweeps = 3;
 constexpr float kRidge = 1e-3f;
 
 /// Arguments: R, N, C. A window that holds the whole of a square map, every weight free and hashed from its place.
 struct FitBench {
-  explicit FitBench(const benchmark::State& state)
+  explicit FitBench(const benchmark::State& state, KernelVariant variant = KernelVariant::kAuto)
       : shape{static_cast<int>(state.range(0)), static_cast<int>(state.range(0)), 3, static_cast<int>(state.range(1)),
               image::SampleType::kUint8},
         space{shape.width / kWeightScale, shape.rows / kWeightScale, static_cast<int>(state.range(2)),
               shape.expressions},
         tiles(context),
         window(context, space),
-        fit(context, space),
-        system(context, space) {
+        fit(context, space, variant),
+        system(context, space, variant) {
     const compress::TileMasks masks = makeBumpMasks(shape.width, 1);
     tiles.upload(masks);
     tile_at = context.upload(compress::tileLookup(masks, shape), "lookup of tiles");
@@ -92,8 +94,8 @@ void setFitCounters(benchmark::State& state, const FitBench& bench) {
                              (textures + bench.pairs() + textures * channels + channels));
 }
 
-void differenceFit(benchmark::State& state) {
-  FitBench bench(state);
+void differenceFit(benchmark::State& state, KernelVariant variant) {
+  FitBench bench(state, variant);
   measure(state, [&] {
     bench.fit.compute(bench.band(), bench.window, kRidge);
     bench.context.finish();
@@ -115,8 +117,8 @@ void differenceFitRounded(benchmark::State& state) {
 /// Must move: differences, texel weights and textures in, the sums of the tiles out. Operations: for each pair of
 /// textures a product over channels and its share in three pairs of rows; for each expression the weighted difference,
 /// a product with each texture and its share in two rows.
-void weightSystem(benchmark::State& state) {
-  FitBench bench(state);
+void weightSystem(benchmark::State& state, KernelVariant variant) {
+  FitBench bench(state, variant);
   measure(state, [&] {
     bench.system.sumTiles(bench.band(), bench.fit.textures());
     bench.context.finish();
@@ -212,11 +214,17 @@ void halfCellGather(benchmark::State& state) {
 
 void arguments(benchmark::internal::Benchmark* row) {
   row->ArgNames({"R", "N", "C"})->UseManualTime()->Unit(benchmark::kMillisecond);
-  row->Args({1024, 20, 4})->Args({1024, 52, 4});
+  row->Args({256, 20, 4})->Args({1024, 8, 4})->Args({1024, 20, 4})->Args({1024, 52, 4});
+  row->Args({512, 100, 4})->Args({2048, 8, 4})->Args({1024, 20, 1})->Args({1024, 20, 8});
 }
-BENCHMARK(differenceFit)->Name("difference_fit")->Apply(arguments);
+void small(benchmark::internal::Benchmark* row) {
+  row->ArgNames({"R", "N", "C"})->UseManualTime()->Unit(benchmark::kMillisecond)->Args({128, 20, 4});
+}
+BENCHMARK_CAPTURE(differenceFit, cpu, KernelVariant::kCpu)->Name("difference_fit")->Apply(arguments);
+BENCHMARK_CAPTURE(differenceFit, gpu, KernelVariant::kGpu)->Name("difference_fit_gpu")->Apply(small);
 BENCHMARK(differenceFitRounded)->Name("difference_fit_rounded")->Apply(arguments);
-BENCHMARK(weightSystem)->Name("weight_system")->Apply(arguments);
+BENCHMARK_CAPTURE(weightSystem, cpu, KernelVariant::kCpu)->Name("weight_system")->Apply(arguments);
+BENCHMARK_CAPTURE(weightSystem, gpu, KernelVariant::kGpu)->Name("weight_system_gpu")->Apply(small);
 BENCHMARK(weightSystemGather)->Name("weight_system_gather")->Apply(arguments);
 BENCHMARK(halfCellGram)->Name("half_cell_gram")->Apply(arguments);
 BENCHMARK(halfCellFit)->Name("half_cell_fit")->Apply(arguments);

@@ -9,6 +9,7 @@
 
 #include "host/sample_package.hpp"
 #include "run_command.hpp"
+#include "small_capture.hpp"
 #include "temporary_directory.hpp"
 
 namespace facezip {
@@ -46,6 +47,17 @@ TEST_F(Start, OpenImageIoIsLoadedForOtherFilesThanPng) {
   const test::CommandResult tif = blend(folder_ / "cache", folder_ / "frame.tif", "LD_DEBUG=files");
   ASSERT_EQ(tif.exit_code, 0);
   EXPECT_THAT(tif.error, HasSubstr("libOpenImageIO"));
+}
+
+TEST_F(Start, CapturesOfPngNeedNoOpenImageIo) {
+  test::writeSmallCapture(folder_ / "capture", {.expressions = 5});
+  const test::CommandResult result =
+      runFacezip("compress " + quoted(folder_ / "capture") + " --output " + quoted(folder_ / "compressed") +
+                     " --unit m --mask-radius 5cm --restarts 3 --cluster-restarts 3",
+                 "LD_DEBUG=files");
+  ASSERT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.error, HasSubstr("libspng"));
+  EXPECT_THAT(result.error, Not(HasSubstr("libOpenImageIO")));
 }
 
 TEST_F(Start, KernelsAreKept) {

@@ -27,8 +27,9 @@ bool isImage(const fs::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extension != ".png" && !imageExtensions().contains(extension)) return false;  // PNG without OpenImageIO
   // A name that starts with a dot is the desktop's or an unfinished copy, not a texture.
-  return imageExtensions().contains(extension) && path.filename().string().front() != '.';
+  return path.filename().string().front() != '.';
 }
 
 /// Image files of a folder by stem. Two files with the same stem would be two textures of one expression.

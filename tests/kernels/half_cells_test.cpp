@@ -17,6 +17,8 @@ constexpr double kSecondMap = 0.5;  // metric weight of the band when it is adde
 class HalfCellsTest : public testing::TestWithParam<GridCase> {
  protected:
   void SetUp() override {
+    if (test::testDevice().resolve(device::KernelVariant::kAuto) != device::KernelVariant::kCpu)
+      GTEST_SKIP() << "on GPUs the turns run on texels";
     const BandShape& shape = GetParam().shape;
     if (test::smallSizesOnly() && (GetParam().textures > 2 || shape.expressions * shape.width * shape.rows > 1100))
       GTEST_SKIP() << "small sizes only";

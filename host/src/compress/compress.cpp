@@ -107,6 +107,7 @@ class Compression {
     do {
       layGrid();
       for (WeightGroup& group : groups_) assign(group);
+      grid_.cells = {};  // weights took their place
       solveAndWrite();
     } while (missesTarget());
     report_.differences = options_.differences;
@@ -416,7 +417,7 @@ class Compression {
     group.start.scale.assign(static_cast<std::size_t>(options_.differences), 1.0 / 255.0);
     group.start.offset.assign(static_cast<std::size_t>(options_.differences), 0.0);
     group.start.codes.resize(mapper.outputBytes(cells));
-    mapper.fill(grid_.cells, 0, cells, group.start.codes);
+    mapper.fillAll(grid_.cells, group.start.codes);
     clock_.book("weight maps");
   }
 

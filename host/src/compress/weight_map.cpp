@@ -93,4 +93,21 @@ void WeightMapper::fill(const CellMasks& cells, std::size_t first_cell, std::siz
   context_.read(weights_, out.data(), out.size(), "weight maps");
 }
 
+void WeightMapper::fillAll(const CellMasks& cells, std::span<std::uint8_t> out) {
+  constexpr std::size_t kCellsAtOnce = std::size_t{1} << 15;
+  const std::size_t count = cells.cells();
+  assert(out.size() == outputBytes(count));
+  const auto channels = static_cast<std::size_t>(clusters_);
+  std::vector<std::uint8_t> range;
+  for (std::size_t first = 0; first < count; first += kCellsAtOnce) {
+    const std::size_t in_range = std::min(kCellsAtOnce, count - first);
+    range.resize(outputBytes(in_range));
+    fill(cells, first, in_range, range);
+    for (std::size_t n = 0; n < static_cast<std::size_t>(expressions_); ++n) {
+      std::copy_n(range.data() + n * in_range * channels, in_range * channels,
+                  out.data() + (n * count + first) * channels);
+    }
+  }
+}
+
 }  // namespace facezip::compress

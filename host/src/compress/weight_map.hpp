@@ -38,6 +38,9 @@ class WeightMapper {
   /// Throws DeviceError, also when the range is too large for the device.
   void fill(const CellMasks& cells, std::size_t first_cell, std::size_t cell_count, std::span<std::uint8_t> out);
 
+  /// The same of all cells, a range at a time: device memory does not grow with the grid.
+  void fillAll(const CellMasks& cells, std::span<std::uint8_t> out);
+
  private:
   cl::Buffer& pooled(cl::Buffer& buffer, std::size_t& capacity, std::size_t bytes, const char* what);
 

@@ -9,15 +9,10 @@
 namespace facezip::raster {
 namespace {
 
-/// One sparse row.
-struct SparseRow {
-  std::vector<int> mask_index;
-  std::vector<float> weight;
-};
-
-SparseRow averageCell(const TexelMasks& masks, const std::vector<TexelSample>& samples, int image_width, int rows,
-                      int cell_x, int scale, std::vector<float>& accumulator) {
-  std::vector<int> touched;
+/// Appends the mean of the masks over the covered texels of a cell.
+void appendCell(const TexelMasks& masks, const std::vector<TexelSample>& samples, int image_width, int rows, int cell_x,
+                int scale, std::vector<float>& accumulator, std::vector<int>& touched, compress::CellMasks& out) {
+  touched.clear();
   int covered = 0;
   const int x_end = std::min(image_width, (cell_x + 1) * scale);
   for (int y = 0; y < rows; ++y) {
@@ -29,24 +24,23 @@ SparseRow averageCell(const TexelMasks& masks, const std::vector<TexelSample>& s
       masks.accumulate(sample, 1.0f, accumulator, touched);
     }
   }
-  SparseRow cell;
   std::sort(touched.begin(), touched.end());
   for (const int mask : touched) {
     float& sum = accumulator[static_cast<std::size_t>(mask)];
-    cell.mask_index.push_back(mask);
-    cell.weight.push_back(sum / static_cast<float>(covered));
+    out.mask_index.push_back(mask);
+    out.mask_weights.push_back(sum / static_cast<float>(covered));
     sum = 0.0f;
   }
-  return cell;
+  out.cell_begin.push_back(static_cast<int>(out.mask_index.size()));
 }
 
 /// For every cell the nearest cell (in steps along the grid, ties to the one found first in row-major order) that is
-/// not empty: a breadth-first search from all filled cells at once.
-std::vector<int> nearestFilled(const std::vector<SparseRow>& cells, int width, int height) {
-  std::vector<int> source(cells.size(), -1);
+/// covered: a breadth-first search from all of them at once. -1 where none is.
+std::vector<int> nearestCovered(const std::vector<std::uint8_t>& covered, int width, int height) {
+  std::vector<int> source(covered.size(), -1);
   std::queue<int> front;
-  for (std::size_t c = 0; c < cells.size(); ++c) {
-    if (cells[c].mask_index.empty()) continue;
+  for (std::size_t c = 0; c < covered.size(); ++c) {
+    if (covered[c] == 0) continue;
     source[c] = static_cast<int>(c);
     front.push(static_cast<int>(c));
   }
@@ -66,6 +60,14 @@ std::vector<int> nearestFilled(const std::vector<SparseRow>& cells, int width, i
   return source;
 }
 
+/// Appends cell `column` of `row` to `out`.
+void copyCell(const compress::CellMasks& row, int column, compress::CellMasks& out) {
+  const auto begin = static_cast<std::ptrdiff_t>(row.cell_begin[static_cast<std::size_t>(column)]);
+  const auto end = static_cast<std::ptrdiff_t>(row.cell_begin[static_cast<std::size_t>(column) + 1]);
+  out.mask_index.insert(out.mask_index.end(), row.mask_index.begin() + begin, row.mask_index.begin() + end);
+  out.mask_weights.insert(out.mask_weights.end(), row.mask_weights.begin() + begin, row.mask_weights.begin() + end);
+}
+
 }  // namespace
 
 WeightGrid makeWeightGrid(const TexelMasks& masks, const UvRaster& raster, int scale) {
@@ -73,27 +75,26 @@ WeightGrid makeWeightGrid(const TexelMasks& masks, const UvRaster& raster, int s
   WeightGrid grid;
   grid.width = (raster.width() + scale - 1) / scale;
   grid.height = (raster.height() + scale - 1) / scale;
-  std::vector<SparseRow> cells(static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height));
+  std::vector<compress::CellMasks> rows(static_cast<std::size_t>(grid.height));
   tbb::parallel_for(0, grid.height, [&](int cell_y) {
     const int begin = cell_y * scale;
     const int end = std::min(raster.height(), begin + scale);
     const std::vector<TexelSample> samples = raster.coveredRows(begin, end);
     std::vector<float> accumulator(static_cast<std::size_t>(masks.maskCount()), 0.0f);
-    for (int cell_x = 0; cell_x < grid.width; ++cell_x) {
-      cells[static_cast<std::size_t>(cell_y * grid.width + cell_x)] =
-          averageCell(masks, samples, raster.width(), end - begin, cell_x, scale, accumulator);
+    std::vector<int> touched;
+    compress::CellMasks& row = rows[static_cast<std::size_t>(cell_y)];
+    row.cell_begin.push_back(0);
+    for (int x = 0; x < grid.width; ++x) {
+      appendCell(masks, samples, raster.width(), end - begin, x, scale, accumulator, touched, row);
     }
   });
-  const std::vector<int> source = nearestFilled(cells, grid.width, grid.height);
-  for (const SparseRow& cell : cells) grid.covered.push_back(cell.mask_index.empty() ? 0 : 1);
+  for (const compress::CellMasks& row : rows) {
+    for (std::size_t x = 0; x < row.cells(); ++x) grid.covered.push_back(row.cell_begin[x] < row.cell_begin[x + 1]);
+  }
   compress::CellMasks& out = grid.cells;
   out.cell_begin.push_back(0);
-  for (const int from : source) {
-    if (from >= 0) {
-      const SparseRow& cell = cells[static_cast<std::size_t>(from)];
-      out.mask_index.insert(out.mask_index.end(), cell.mask_index.begin(), cell.mask_index.end());
-      out.mask_weights.insert(out.mask_weights.end(), cell.weight.begin(), cell.weight.end());
-    }
+  for (const int from : nearestCovered(grid.covered, grid.width, grid.height)) {
+    if (from >= 0) copyCell(rows[static_cast<std::size_t>(from / grid.width)], from % grid.width, out);
     out.cell_begin.push_back(static_cast<int>(out.mask_index.size()));
   }
   return grid;

@@ -149,6 +149,9 @@ void printCompressReport(const CompressReport& report) {
              report.covered_texels);
   fmt::print("mask tails cut: {:.2f} % of a vertex's weight on average, {:.1f} % at most; {:.1f} masks at a vertex\n",
              100.0 * report.cut_mass_mean, 100.0 * report.cut_mass_max, report.active_masks_mean);
+  fmt::print("textures {}, in bands of {} rows\n",
+             report.decoded == "scratch file" ? "decoded once, into a scratch file" : "decoded again in every pass",
+             report.band_rows);
   printPermutation(report);
   if (report.refinement_errors.size() > 1 && report.refinement_errors.front() > 0.0) {
     fmt::print("refining: squared error");

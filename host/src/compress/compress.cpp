@@ -14,6 +14,7 @@
 
 #include "compress/band_plan.hpp"
 #include "compress/code_bits.hpp"
+#include "compress/compress_options.hpp"
 #include "compress/face.hpp"
 #include "compress/gram.hpp"
 #include "compress/importance.hpp"
@@ -23,7 +24,7 @@
 #include "compress/method_record.hpp"
 #include "compress/package_output.hpp"
 #include "compress/permutation_solver.hpp"
-#include "compress/rate_estimate.hpp"
+#include "compress/rate_search.hpp"
 #include "compress/refinement.hpp"
 #include "compress/seam_cost.hpp"
 #include "compress/stage_clock.hpp"
@@ -56,29 +57,6 @@ struct WeightGroup {
   std::vector<double> errors;                     ///< of every map: squared error before rounding, (1/255)^2
   double start_error = 0.0;                       ///< of all maps, with the start's weights, as the refinement saw it
 };
-
-void requireSaneOptions(const CompressOptions& options) {
-  const auto require = [](bool holds, const char* option, const char* expected, const std::string& got) {
-    if (!holds) throw InputError({option, "", expected, got, ""});
-  };
-  require(options.weight_scale >= 1 && options.weight_scale <= 64, "--weight-scale", "1 to 64",
-          fmt::format("{}", options.weight_scale));
-  require(options.differences >= 1 && options.differences <= 8, "--differences", "1 to 8",
-          fmt::format("{}", options.differences));
-  const bool chooses = options.target_rmse || options.budget_bytes;
-  require(!options.target_rmse || (*options.target_rmse > 0.0 && std::isfinite(*options.target_rmse)), "--target-rmse",
-          "above 0 and finite", fmt::format("{}", options.target_rmse.value_or(0.0)));
-  require(!chooses || options.method == Method::kRefined, "--method", "refined, with a target or budget",
-          methodName(options.method));
-  require(options.restarts >= 1, "--restarts", "at least 1", fmt::format("{}", options.restarts));
-  require(options.cluster_restarts >= 1, "--cluster-restarts", "at least 1",
-          fmt::format("{}", options.cluster_restarts));
-  require(options.mask_cutoff >= 0.0 && options.mask_cutoff < 1.0, "--mask-cutoff", "0 or more and below 1",
-          fmt::format("{}", options.mask_cutoff));
-  require(!options.masks || *options.masks >= 1, "--masks", "at least 1", fmt::format("{}", options.masks.value_or(0)));
-  require(!options.gutter || *options.gutter >= 0, "--gutter", "0 or more",
-          fmt::format("{}", options.gutter.value_or(0)));
-}
 
 std::uint64_t peakMemoryBytes() {
   rusage usage{};
@@ -165,8 +143,9 @@ class Compression {
       groups_[options_.weights_per_map ? m : 0].maps.push_back(&maps_.maps[m]);
     }
     for (const WeightGroup& group : groups_) assignFitWeights(group.maps);
-    if (choosesRate()) {
-      openRates();
+    if (options_.target_rmse || options_.budget_bytes) {
+      rates_ = std::make_unique<RateSearch>(options_, maps_, expressions(), weightSets());
+      take(rates_->smallest());
     } else {
       assignWeightScales(maps_, options_.weight_scale);
     }
@@ -176,7 +155,7 @@ class Compression {
 
   // The weight grid: masks at its cells.
   void layGrid() {
-    if (choosesRate()) chooseRate();
+    if (rates_) chooseRate();
     progress_.stage("weight grid", 0);
     grid_ = raster::makeWeightGrid(*texel_masks_, *maps_.maps[maps_.reference].raster, options_.weight_scale);
     clock_.book("weight grid");
@@ -186,30 +165,15 @@ class Compression {
     }
   }
 
-  void openRates() {
-    rates_ = std::make_unique<RateEstimate>(maps_, expressions());
-    // Sizes are known before any texel is.
-    const RatePoint smallest = efficientPoints(rates_->curve(weightSets())).front();
-    if (options_.budget_bytes && smallest.bytes > *options_.budget_bytes) {
-      throw InputError({"--budget", "",
-                        fmt::format("at least {} bytes, for {} difference texture with weights at 1/{}", smallest.bytes,
-                                    smallest.differences, smallest.weight_scale),
-                        fmt::format("{}", *options_.budget_bytes), "raise it, or compress smaller textures"});
-    }
-    take(smallest);
-  }
-
   // Takes the number of textures and the weight scale from the curve.
   void chooseRate() {
-    if (report_.rate_curve.empty()) {
-      report_.rate_curve = efficientPoints(rates_->curve(weightSets()));
-      keepWhatMemoryHolds(report_.rate_curve);
-    }
-    std::optional<RatePoint> chosen =
-        compress::chooseRate(report_.rate_curve, options_.target_rmse, options_.budget_bytes, calibration_);
-    if (!chosen) chosen = lastResort();
-    take(*chosen);
+    const RatePoint chosen = rates_->choose([this](const RatePoint& point) {
+      take(point);
+      return fitsMemory();
+    });
+    take(chosen);
     report_.rate = chosen;
+    report_.rate_curve = rates_->curve();
     report_.band_rows = plannedBandRows();
   }
 
@@ -217,17 +181,6 @@ class Compression {
     options_.differences = point.differences;
     options_.weight_scale = point.weight_scale;
     assignWeightScales(maps_, point.weight_scale);
-  }
-
-  /// Drops the points whose weights do not fit --memory. Where nothing would be left to choose from all stay, and
-  /// planning says what is missing.
-  void keepWhatMemoryHolds(std::vector<RatePoint>& curve) {
-    std::vector<RatePoint> held;
-    for (const RatePoint& point : curve) {
-      take(point);
-      if (fitsMemory()) held.push_back(point);
-    }
-    if (compress::chooseRate(held, std::nullopt, options_.budget_bytes, 1.0)) curve = std::move(held);
   }
 
   bool fitsMemory() const {
@@ -240,24 +193,18 @@ class Compression {
     }
   }
 
-  /// The best point there is, where the estimate says that none reaches the target. It may be wrong: it is tried where
-  /// that was found of another, or it is not too far off. Throws InputError where there is no hope.
-  RatePoint lastResort() const {
-    constexpr double kMostPessimism = 2.0;  // estimates of small captures are up to 1.4 times what is reached
-    const RatePoint best = *compress::chooseRate(report_.rate_curve, std::nullopt, options_.budget_bytes, 1.0);
-    const bool tried = report_.rate == best;
-    if (!tried && best.rmse <= kMostPessimism * *options_.target_rmse) return best;
-    throw InputError(
-        {"--target-rmse", "",
-         fmt::format("at least {:.3f}, which {} differences with weights at 1/{} {}{}", tried ? reached_ : best.rmse,
-                     best.differences, best.weight_scale, tried ? "reach" : "are expected to reach",
-                     options_.budget_bytes ? " within the budget" : ""),
-         fmt::format("{}", *options_.target_rmse), "raise it, or the budget where there is one"});
+  /// True if the package that was written misses the target: the search then learns from it.
+  bool missesTarget() {
+    if (!rates_) return false;
+    const double reached = pooledRmse();
+    if (!rates_->misses(reached)) return false;
+    progress_.note(fmt::format("{} differences with weights at 1/{} reach {:.3f}, not {:.3f}: trying more",
+                               options_.differences, options_.weight_scale, reached, *options_.target_rmse));
+    return true;
   }
 
-  /// True if the package that was written misses the target: the estimate then learns from it.
-  bool missesTarget() {
-    if (!options_.target_rmse) return false;
+  /// Of all maps as written, metric weights in it.
+  double pooledRmse() const {
     double error = 0.0;
     double samples = 0.0;
     for (std::size_t m = 0; m < maps_.maps.size(); ++m) {
@@ -266,13 +213,7 @@ class Compression {
       error += weight * report_.rmse[m].second * report_.rmse[m].second;
       samples += weight;
     }
-    reached_ = std::sqrt(error / samples);
-    if (reached_ <= *options_.target_rmse) return false;
-    progress_.note(fmt::format("{} differences with weights at 1/{} reach {:.3f}, not {:.3f}: trying more",
-                               options_.differences, options_.weight_scale, reached_, *options_.target_rmse));
-    constexpr double kNotAgain = 1.0 + 1e-9;  // rounding must not let the same point pass
-    calibration_ = std::max(reached_ / report_.rate->rmse * kNotAgain, calibration_);
-    return true;
+    return std::sqrt(error / samples);
   }
 
   /// Known before the grid is laid.
@@ -283,8 +224,6 @@ class Compression {
   }
 
   int weightSets() const { return static_cast<int>(groups_.size()); }
-
-  bool choosesRate() const { return options_.target_rmse || options_.budget_bytes; }
 
   /// What stays from pass to pass: weights of every set as codes, at the start and as written, one as halves while it
   /// is refined, and the masks of the cells.
@@ -365,7 +304,7 @@ class Compression {
         };
         forEachBand(*map, "Gram matrices", make_tiles, [&](const MapBand& band) {
           accumulator.add(band.tiles, band.differences, band.shape, map->fit_weight);
-          if (rates_) rates_->addBand(static_cast<std::size_t>(map - maps_.maps.data()), band);
+          if (rates_) rates_->estimate().addBand(static_cast<std::size_t>(map - maps_.maps.data()), band);
           covered +=
               static_cast<std::uint64_t>(std::count_if(band.masks.texel_weights.begin(), band.masks.texel_weights.end(),
                                                        [](float weight) { return weight > 0.0f; }));
@@ -383,11 +322,11 @@ class Compression {
   // A change that the sample of a map's texels missed altogether leaves nothing to estimate by.
   void lookAgain() {
     for (std::size_t m = 0; m < maps_.maps.size(); ++m) {
-      if (!rates_->sawNothing(m)) continue;
-      rates_->startOver(m);
+      if (!rates_->estimate().sawNothing(m)) continue;
+      rates_->estimate().startOver(m);
       OpenMap& map = maps_.maps[m];
       const auto make_tiles = [&](int begin, int end) { return raster::coverageTiles(*map.raster, begin, end); };
-      forEachBand(map, "estimating", make_tiles, [&](const MapBand& band) { rates_->addBand(m, band); });
+      forEachBand(map, "estimating", make_tiles, [&](const MapBand& band) { rates_->estimate().addBand(m, band); });
     }
   }
 
@@ -616,9 +555,7 @@ class Compression {
   MapSet maps_;
   raster::WeightGrid grid_;
   std::optional<Importance> importance_;
-  std::unique_ptr<RateEstimate> rates_;  ///< where a target or budget was given
-  double calibration_ = 1.0;             ///< error that was measured over what the estimate had said; at least 1
-  double reached_ = 0.0;                 ///< RMSE of the last attempt, where there is a target
+  std::unique_ptr<RateSearch> rates_;  ///< where a target or budget was given
   std::vector<WeightGroup> groups_;
   std::vector<std::uint64_t> covered_texels_;  ///< of every map
   std::jthread decoder_;                       ///< reads what the members above hold: the first to go

@@ -1,0 +1,35 @@
+#include "compress/compress_options.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "compress/method_record.hpp"
+#include "facezip/error.hpp"
+
+namespace facezip::compress {
+
+void requireSaneOptions(const CompressOptions& options) {
+  const auto require = [](bool holds, const char* option, const char* expected, const std::string& got) {
+    if (!holds) throw InputError({option, "", expected, got, ""});
+  };
+  require(options.weight_scale >= 1 && options.weight_scale <= 64, "--weight-scale", "1 to 64",
+          fmt::format("{}", options.weight_scale));
+  require(options.differences >= 1 && options.differences <= 8, "--differences", "1 to 8",
+          fmt::format("{}", options.differences));
+  const bool chooses = options.target_rmse || options.budget_bytes;
+  require(!options.target_rmse || (*options.target_rmse > 0.0 && std::isfinite(*options.target_rmse)), "--target-rmse",
+          "above 0 and finite", fmt::format("{}", options.target_rmse.value_or(0.0)));
+  require(!chooses || options.method == CompressOptions::Method::kRefined, "--method",
+          "refined, with a target or budget", methodName(options.method));
+  require(options.restarts >= 1, "--restarts", "at least 1", fmt::format("{}", options.restarts));
+  require(options.cluster_restarts >= 1, "--cluster-restarts", "at least 1",
+          fmt::format("{}", options.cluster_restarts));
+  require(options.mask_cutoff >= 0.0 && options.mask_cutoff < 1.0, "--mask-cutoff", "0 or more and below 1",
+          fmt::format("{}", options.mask_cutoff));
+  require(!options.masks || *options.masks >= 1, "--masks", "at least 1", fmt::format("{}", options.masks.value_or(0)));
+  require(!options.gutter || *options.gutter >= 0, "--gutter", "0 or more",
+          fmt::format("{}", options.gutter.value_or(0)));
+}
+
+}  // namespace facezip::compress

@@ -16,6 +16,7 @@ struct Arguments {
   std::string weights;
   std::string animation;
   std::string output;
+  std::string gain;
   std::string device = "auto";
 };
 
@@ -30,6 +31,7 @@ void blendFrames(const Arguments& arguments, Progress& progress) {
   const AnimationClip clip = readFrames(arguments, package);
   const FramePattern pattern(arguments.output, !arguments.animation.empty(), package.maps().size());
   Blender blender(package, openDevice(arguments.device, &progress));
+  if (!arguments.gain.empty()) blender.setGain(readGain(arguments.gain, package));
   std::vector<std::byte> frame;
   progress.stage("blending", static_cast<std::size_t>(clip.frames()));
   for (int f = 0; f < clip.frames(); ++f) {
@@ -62,6 +64,8 @@ void addBlendCommand(CLI::App& app, const CommonOptions& common) {
                    "without it: FILE.MAP.EXT)")
       ->required()
       ->type_name("FILE");
+  command->add_option("--gain", arguments->gain, "Gains of expressions and regions, a preset that `facezip view` saved")
+      ->type_name("FILE.json");
   addDeviceOption(*command, arguments->device);
   command->callback([arguments, &common] {
     TerminalProgress progress(common.quiet);

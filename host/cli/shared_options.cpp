@@ -98,6 +98,7 @@ void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
       .add_option("--gutter", arguments.gutter,
                   "Texels around UV islands that get masks too (default: 1/64 of the side, at least 16)")
       ->check(CLI::NonNegativeNumber);
+  command.add_flag("!--no-mesh", options.mesh, "Leave the meshes out of the package: no viewer, no exports");
   addMemoryOption(command, arguments.memory);
 }
 

@@ -80,6 +80,26 @@ TEST_P(WeightBlend, AgreesWithTheReference) {
   for (std::size_t q = 0; q < expected.size(); ++q) ASSERT_NEAR(weights[q], expected[q], tolerance) << q;
 }
 
+TEST_P(WeightBlend, MultipliesEveryCellByItsGain) {
+  const auto& [size, variant] = GetParam();
+  const reference::WeightMaps maps = randomMaps(size.columns, size.rows, size.channels, size.expressions);
+  blend::WeightMaps on_device = upload(maps, variant);
+  const std::vector<float> beta = someWeights(size.expressions);
+  on_device.blend(beta);
+  const std::vector<float> without = download(on_device);
+  std::vector<float> gain;
+  for (int cell = 0; cell < size.columns * size.rows; ++cell) gain.push_back(0.25f * static_cast<float>(cell % 9));
+  on_device.setGain(gain);
+  on_device.blend(beta);
+  const std::vector<float> weights = download(on_device);
+  const std::vector<double> expected = reference::blendWeights(maps, beta, gain);
+  const double tolerance = 2.0 * 8.0 * (size.expressions + 2) * 6e-8 * size.channels;
+  for (std::size_t q = 0; q < expected.size(); ++q) ASSERT_NEAR(weights[q], expected[q], tolerance) << q;
+  on_device.setGain({});
+  on_device.blend(beta);
+  EXPECT_EQ(download(on_device), without);
+}
+
 INSTANTIATE_TEST_SUITE_P(Sizes, WeightBlend,
                          testing::Combine(testing::Values(WeightCase{1, 1, 4, 1}, WeightCase{12, 8, 4, 5},
                                                           WeightCase{13, 7, 3, 52}, WeightCase{5, 9, 8, 2},

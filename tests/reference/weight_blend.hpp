@@ -13,8 +13,9 @@ struct WeightMaps {
   std::vector<double> scale, offset;  // [C]
 };
 
-/// [rows][columns][C]
-inline std::vector<double> blendWeights(const WeightMaps& maps, const std::vector<float>& beta) {
+/// [rows][columns][C]; gain [rows][columns], empty for 1
+inline std::vector<double> blendWeights(const WeightMaps& maps, const std::vector<float>& beta,
+                                        const std::vector<float>& gain = {}) {
   const std::size_t size = std::size_t(maps.columns) * std::size_t(maps.rows) * std::size_t(maps.channels);
   std::vector<double> sum(size, 0.0);
   for (std::size_t n = 0; n < std::size_t(maps.expressions); ++n) {
@@ -23,6 +24,7 @@ inline std::vector<double> blendWeights(const WeightMaps& maps, const std::vecto
       sum[q] += double(beta[n]) * (maps.scale[i] * maps.codes[n * size + q] + maps.offset[i]);
     }
   }
+  for (std::size_t q = 0; q < size && !gain.empty(); ++q) sum[q] *= double(gain[q / std::size_t(maps.channels)]);
   return sum;
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "facezip/device.hpp"
+#include "facezip/gain.hpp"
 #include "facezip/package.hpp"
 
 namespace facezip {
@@ -32,6 +33,9 @@ class Blender {
   /// beta  N values in the order of Package::expressions(); any sign, finite
   /// Throws InputError for another count, and naming the expression whose value is NaN or infinite.
   void setWeights(std::span<const float> beta);
+
+  /// Sets gains, for the setWeights() calls that follow. Throws InputError when the gain is of another package.
+  void setGain(const Gain& gain);
 
   /// Blends one map with the current weights into `out`, in the type of the map's neutral: integers are rounded half up
   /// and clamped; floats are neither. With all weights zero the result is the neutral, bit for bit.

@@ -58,6 +58,9 @@ struct CompressOptions {
   /// fully, black a hundredth.
   std::string importance;
   std::optional<int> gutter;  ///< texels; default max(16, side / 64)
+  /// Also put the neutral's mesh and the expressions', where the capture has them, into the package: viewers and
+  /// exports need them, frames do not. Takes 36 bytes a vertex and expression of memory while it is written.
+  bool mesh = true;
 };
 
 /// A number of difference textures and a weight scale, with what they cost.

@@ -1,8 +1,10 @@
 // package.hpp - a compressed capture on disk: what docs/package_format.md says, as C++ values.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,6 +52,24 @@ struct PackageWeights {
   std::vector<double> offset;  ///< C
 };
 
+/// Masks M_k of the method on a grid of at most 128 cells a side, one tile a mask in one gray image, 255 = 1: where
+/// gains of regions act, and what viewers show. Frames do not need them.
+struct PackageMasks {
+  std::string file;  ///< relative to the package
+  int count = 0;     ///< K
+  int columns = 0;   ///< tiles in a row; mask k is tile k in row-major order, without borders
+  int rows = 0;
+  int tile_width = 0;                          ///< cells over the width of a map
+  int tile_height = 0;                         ///< cells over its height
+  std::vector<std::array<double, 2>> samples;  ///< K, UV of the vertex that each mask was laid around, v up
+};
+
+/// A part of the face that people can name: the sum of some masks.
+struct PackageRegion {
+  std::string name;
+  std::vector<int> masks;  ///< indices into the masks, each in one region at most
+};
+
 /// All that package.json says.
 struct PackageDescription {
   std::string generator;                 ///< "facezip X.Y.Z", what wrote it
@@ -58,6 +78,9 @@ struct PackageDescription {
   int differences = 4;                   ///< C, 1 to 8
   std::vector<PackageWeights> weights;   ///< at least one; each is used by a map
   std::vector<PackageMap> maps;
+  std::string mesh_file;               ///< glTF 2.0 binary, neutral and morph targets; "" where there is none
+  std::optional<PackageMasks> masks;   ///< with regions
+  std::vector<PackageRegion> regions;  ///< empty without masks
   /// EXPERIMENTAL: a JSON object that records how the package was made; its fields may change in any version.
   std::string method_json = "{}";
 };

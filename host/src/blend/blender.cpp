@@ -46,13 +46,14 @@ struct Blender::State {
   std::vector<PackageMap> maps;
   std::vector<std::shared_ptr<blend::WeightMaps>> weights;  // per set
   std::vector<std::deque<blend::TextureRows>> textures;     // per map
+  std::vector<float> gains;                                 // of expressions; empty: all 1
 
   blend::WeightMaps& weightsOf(std::size_t map) { return *weights[static_cast<std::size_t>(maps[map].weight_set)]; }
 };
 
 Blender::Blender(const Package& package, const Device& device)
-    : state_(std::make_unique<State>(
-          State{device, package.expressions(), package.maps(), blend::loadWeightMaps(package, device.context()), {}})) {
+    : state_(std::make_unique<State>(State{
+          device, package.expressions(), package.maps(), blend::loadWeightMaps(package, device.context()), {}, {}})) {
   for (std::size_t m = 0; m < state_->maps.size(); ++m) {
     const blend::WeightGrid& grid = state_->weightsOf(m).grid();
     state_->textures.push_back(loadMap(package, static_cast<int>(m), grid, device.context()));
@@ -66,7 +67,19 @@ Blender& Blender::operator=(Blender&&) noexcept = default;
 
 void Blender::setWeights(std::span<const float> beta) {
   blend::requireWeights(beta, state_->expressions);
-  for (const std::shared_ptr<blend::WeightMaps>& set : state_->weights) set->blend(beta);
+  std::vector<float> weights(beta.begin(), beta.end());
+  for (std::size_t n = 0; n < state_->gains.size(); ++n) weights[n] *= state_->gains[n];
+  for (const std::shared_ptr<blend::WeightMaps>& set : state_->weights) set->blend(weights);
+}
+
+void Blender::setGain(const Gain& gain) {
+  bool fits = gain.expressions.size() == state_->expressions.size() && gain.cells.size() == state_->weights.size();
+  for (std::size_t set = 0; fits && set < gain.cells.size(); ++set) {
+    fits = gain.cells[set].empty() || gain.cells[set].size() == state_->weights[set]->grid().cells();
+  }
+  if (!fits) throw InputError({"", "gain", "one that was made for this package", "one of another shape", ""});
+  state_->gains = gain.expressions;
+  for (std::size_t set = 0; set < gain.cells.size(); ++set) state_->weights[set]->setGain(gain.cells[set]);
 }
 
 void Blender::blend(int map_index, std::span<std::byte> out) {

@@ -31,11 +31,21 @@ WeightMaps::WeightMaps(device::DeviceContext& context, WeightGrid grid, std::spa
   active_expressions_.reserve(expressions);
   active_beta_.reserve(expressions);
   decoding_.resize(2 * channels);
+  gain_ = context.allocate(grid_.blocks() * 16 * sizeof(float), CL_MEM_READ_ONLY, "gains of cells");
+  setGain({});
   kernel_.setArg(0, codes_);
   kernel_.setArg(1, active_);
   kernel_.setArg(2, beta_);
   kernel_.setArg(3, encoding_);
   kernel_.setArg(4, weights_);
+  kernel_.setArg(9, gain_);
+}
+
+void WeightMaps::setGain(std::span<const float> gain) {
+  assert(gain.empty() || gain.size() == grid_.cells());
+  std::vector<float> padded(grid_.blocks() * 16, 1.0f);
+  std::ranges::copy(gain, padded.begin());
+  context_.write(gain_, padded.data(), padded.size() * sizeof(float), "gains of cells");
 }
 
 cl::Event WeightMaps::blend(std::span<const float> beta, int begin_row, int end_row) {

@@ -50,6 +50,9 @@ class WeightMaps {
   cl::Event blend(std::span<const float> beta, int begin_row, int end_row);
   cl::Event blend(std::span<const float> beta) { return blend(beta, 0, grid_.rows); }
 
+  /// Multiplies what blend() gives from now on, cell by cell, by `gain`: cells() factors, row-major; empty: 1.
+  void setGain(std::span<const float> gain);
+
   /// [blocks][C][16] float, the result of blend().
   const cl::Buffer& weights() const { return weights_; }
 
@@ -63,6 +66,7 @@ class WeightMaps {
   cl::Buffer active_;
   cl::Buffer beta_;
   cl::Buffer encoding_;
+  cl::Buffer gain_;
   cl::Buffer weights_;
   std::vector<cl_int> active_expressions_;
   std::vector<float> active_beta_;

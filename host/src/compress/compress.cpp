@@ -16,6 +16,7 @@
 #include "compress/code_bits.hpp"
 #include "compress/compress_options.hpp"
 #include "compress/face.hpp"
+#include "compress/face_guides.hpp"
 #include "compress/gram.hpp"
 #include "compress/importance.hpp"
 #include "compress/kmeans.hpp"
@@ -90,6 +91,10 @@ class Compression {
     } while (missesTarget());
     report_.differences = options_.differences;
     report_.weight_scale = options_.weight_scale;
+    if (options_.mesh) {
+      writeFaceMesh(capture_, face_, masks_.unit, expression_meshes_, staged_.path());
+      clock_.book("mesh");
+    }
     report_.package_disk_bytes = diskBytes();
     staged_.commit();
     clock_.book("publishing");
@@ -109,7 +114,8 @@ class Compression {
   void readGeometry() {
     progress_.stage("reading meshes", 0);
     face_ = readFace(capture_, options_.region);
-    requireExpressionTopology(capture_, face_.mesh, progress_);
+    expression_meshes_ = readExpressionMeshes(capture_, face_.mesh, progress_);
+    if (!options_.mesh) expression_meshes_.clear();
     const fs::path painted =
         options_.importance.empty() ? capture_.importance.value_or("") : fs::path(options_.importance);
     if (!painted.empty() && painted != "none") importance_.emplace(painted);
@@ -470,6 +476,8 @@ class Compression {
     PackageSolution solution;
     solution.differences = options_.differences;
     solution.method_json = methodJson(options_, report_, face_.region_description);
+    solution.has_mesh = options_.mesh;
+    solution.guides = makeMaskGuides(face_, masks_, grid_);
     std::vector<std::unique_ptr<TextureSource>> sources;
     struct Fitted {
       FittedTextures* source;
@@ -550,6 +558,7 @@ class Compression {
   StageClock clock_;
   CompressReport report_;
   Face face_;
+  std::vector<Eigen::MatrixX3f> expression_meshes_;  ///< N, some of 0 rows; empty where they are not kept
   FaceMasks masks_;
   std::unique_ptr<raster::TexelMasks> texel_masks_;
   MapSet maps_;

@@ -71,14 +71,19 @@ Face readFace(const Capture& capture, const std::string& region) {
   return face;
 }
 
-void requireExpressionTopology(const Capture& capture, const geometry::TriangleMesh& neutral, Progress& progress) {
+std::vector<Eigen::MatrixX3f> readExpressionMeshes(const Capture& capture, const geometry::TriangleMesh& neutral,
+                                                   Progress& progress) {
   progress.stage("checking meshes", capture.expression_meshes.size());
+  std::vector<Eigen::MatrixX3f> positions(capture.expression_meshes.size());
   tbb::parallel_for(std::size_t{0}, capture.expression_meshes.size(), [&](std::size_t n) {
     const fs::path& file = capture.expression_meshes[n];
     if (file.empty()) return;
     progress.checkCancelled();
-    geometry::requireSameTopology(neutral, capture.neutral_mesh.string(), geometry::readObj(file), file.string());
+    const geometry::TriangleMesh mesh = geometry::readObj(file);
+    geometry::requireSameTopology(neutral, capture.neutral_mesh.string(), mesh, file.string());
+    positions[n] = mesh.positions.cast<float>();
   });
+  return positions;
 }
 
 namespace {

@@ -27,8 +27,10 @@ struct Face {
 /// Throws InputError: unreadable mesh, no UVs, UVs outside [0, 1], an empty region.
 Face readFace(const Capture& capture, const std::string& region);
 
-/// Checks every expression mesh of the capture against the neutral. Throws InputError naming the first that differs.
-void requireExpressionTopology(const Capture& capture, const geometry::TriangleMesh& neutral, Progress& progress);
+/// Reads every expression mesh of the capture and checks it against the neutral. Returns the positions of each, #V by
+/// 3; 0 rows where an expression has no mesh. Throws InputError naming the first that differs.
+std::vector<Eigen::MatrixX3f> readExpressionMeshes(const Capture& capture, const geometry::TriangleMesh& neutral,
+                                                   Progress& progress);
 
 /// The masks of a face (FaceZip 3.1, "Mask Computation").
 struct FaceMasks {

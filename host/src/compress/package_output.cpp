@@ -6,6 +6,7 @@
 
 #include "compress/texture_encoder.hpp"
 #include "facezip/package.hpp"
+#include "package/guides.hpp"
 #include "package/package_writer.hpp"
 
 namespace facezip::compress {
@@ -49,6 +50,9 @@ PackageDescription describe(const Capture& capture, const PackageSolution& solut
   }
   for (const MapSolution& map : solution.maps) description.maps.push_back(describeMap(map, solution.differences));
   description.method_json = solution.method_json;
+  if (solution.has_mesh) description.mesh_file = package::kMeshFile;
+  description.masks = solution.guides.masks;
+  description.regions = solution.guides.regions;
   return description;
 }
 
@@ -86,6 +90,7 @@ void writePackage(device::DeviceContext& context, const Capture& capture, const 
   for (std::size_t m = 0; m < solution.maps.size(); ++m) {
     writeMap(context, solution.maps[m], static_cast<int>(m), solution.differences, pass, writer);
   }
+  image::writeImage(directory / package::kMasksFile, solution.guides.picture);
   writer.finish();
 }
 

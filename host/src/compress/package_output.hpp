@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "compress/face_guides.hpp"
 #include "compress/grid_weights.hpp"
 #include "compress/map_bands.hpp"
 #include "compress/map_set.hpp"
@@ -28,6 +29,8 @@ struct PackageSolution {
   std::vector<EncodedWeights> weights;  ///< of each weight set
   std::vector<MapSolution> maps;
   std::string method_json;
+  bool has_mesh = false;  ///< mesh.glb is written beside it
+  MaskGuides guides;
 };
 
 /// Runs a pass over the bands of a map with the tiles of `source`.

@@ -45,6 +45,7 @@ Subject makeSubject(const Capture& capture, const Package& package, std::uint64_
                   progress,
                   {}};
   subject.recorded.memory_bytes = memory_bytes;
+  subject.recorded.mesh = false;  // baselines are for their errors alone
   subject.face = compress::readFace(subject.capture, subject.recorded.region);
   return subject;
 }

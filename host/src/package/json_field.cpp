@@ -18,6 +18,11 @@ JsonField JsonField::operator[](const char* key) const {
   return {*found, file_, path};
 }
 
+bool JsonField::has(const char* key) const {
+  if (!value_.is_object()) fail("an object", got());
+  return value_.contains(key);
+}
+
 std::vector<JsonField> JsonField::elements(std::size_t least, std::size_t most) const {
   const std::string expected =
       least == most ? fmt::format("an array of {}", least) : fmt::format("an array of {} to {}", least, most);

@@ -19,6 +19,8 @@ class JsonField {
 
   /// The member `key` of an object. Throws InputError if this is no object or has no such member.
   JsonField operator[](const char* key) const;
+  /// True for an object that has the member `key`. Throws InputError if this is no object.
+  bool has(const char* key) const;
   /// The elements of an array of `least` to `most` elements. Throws InputError.
   std::vector<JsonField> elements(std::size_t least, std::size_t most) const;
 

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <system_error>
 
+#include "package/guides.hpp"
 #include "package/package_files.hpp"
 #include "package/package_json.hpp"
 
@@ -46,7 +47,8 @@ Package Package::open(const fs::path& directory) {
   const fs::path file = package.directory_ / package::kDescriptionFile;
   const std::string text = readDescription(file);
   package.description_ = package::parsePackageJson(text, file.string());
-  package.bytes_on_disk_ = text.size() + package::checkImages(package.description_, package.directory_);
+  package.bytes_on_disk_ = text.size() + package::checkImages(package.description_, package.directory_) +
+                           package::checkGuides(package.description_, package.directory_);
   return package;
 }
 

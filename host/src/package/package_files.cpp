@@ -42,13 +42,13 @@ void requireWhole(image::ImageReader& reader) {
   reader.readRows(shape.height - 1, shape.height, row);
 }
 
+}  // namespace
+
 std::uint64_t checkImage(const fs::path& file, const image::ImageShape& shape) {
   image::ImageReader reader = openImage(file, shape);
   requireWhole(reader);
   return fs::file_size(file);
 }
-
-}  // namespace
 
 image::ImageShape neutralShape(const PackageMap& map) { return {map.width, map.height, map.channels, map.sample_type}; }
 

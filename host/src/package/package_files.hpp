@@ -16,6 +16,9 @@ image::ImageShape differenceShape(const PackageMap& map);
 /// `shape`.
 image::ImageReader openImage(const std::filesystem::path& file, const image::ImageShape& shape);
 
+/// Opens an image of the package and checks that it is not cut short. Returns its bytes. Throws InputError.
+std::uint64_t checkImage(const std::filesystem::path& file, const image::ImageShape& shape);
+
 /// Opens every image of `description` and checks its shape and that it is not cut short.
 /// Returns the bytes of all of them. Throws InputError that names the file.
 std::uint64_t checkImages(const PackageDescription& description, const std::filesystem::path& directory);

@@ -9,8 +9,10 @@
 #include <set>
 #include <utility>
 
+#include "package/guides.hpp"
 #include "package/json_field.hpp"
 #include "package/package_writer.hpp"
+#include "package/safe_names.hpp"
 
 namespace facezip::package {
 namespace {
@@ -56,35 +58,6 @@ Document mapJson(const PackageMap& map) {
           {"neutral", {{"file", map.neutral_file}}},
           {"difference_bits", map.difference_bits},
           {"differences", differences}};
-}
-
-/// A name that becomes a file or folder name when textures are written: it must not leave the folder, nor hide in it.
-std::string fileSafeName(const JsonField& field) {
-  constexpr std::size_t kLongest = 200;  // file systems stop at 255, and an extension follows
-  const std::string name = field.text();
-  const std::string expected = "a name without '/', '\\', '..', a leading '.' or control characters";
-  if (name.empty()) field.fail(expected, "an empty name");
-  if (name.size() > kLongest) field.fail(fmt::format("a name of at most {} bytes", kLongest), quoted(name));
-  bool safe = name.front() != '.' && name.find("..") == std::string::npos;
-  for (const char c : name) safe = safe && static_cast<unsigned char>(c) >= 0x20 && c != 0x7f && c != '/' && c != '\\';
-  if (!safe) field.fail(expected, quoted(name));
-  return name;
-}
-
-std::string fileInPackage(const JsonField& field, const std::string& extension) {
-  const std::string name = field.text();
-  bool safe = !name.empty() && name.size() < 4096;
-  std::size_t begin = 0;
-  while (safe && begin <= name.size()) {
-    const std::size_t end = std::min(name.find('/', begin), name.size());
-    const std::string part = name.substr(begin, end - begin);
-    safe = !part.empty() && part != "." && part.find("..") == std::string::npos;
-    begin = end + 1;
-  }
-  for (const char c : name) safe = safe && static_cast<unsigned char>(c) >= 0x20 && c != 0x7f && c != '\\' && c != ':';
-  if (!safe) field.fail("a path inside the package, without '..'", quoted(name));
-  if (!name.ends_with(extension)) field.fail(fmt::format("the name of a {} file", extension), quoted(name));
-  return name;
 }
 
 void requireUnique(const std::vector<JsonField>& fields, const char* what) {
@@ -233,15 +206,16 @@ std::string packageJson(const PackageDescription& description) {
   Document maps = Document::array();
   for (const PackageMap& map : description.maps) maps.push_back(mapJson(map));
   try {
-    const Document document = {{"format", "facezip-package"},
-                               {"version", kFormatVersion},
-                               {"generator", description.generator},
-                               {"name", description.name},
-                               {"expressions", description.expressions},
-                               {"differences", description.differences},
-                               {"weights", weight_sets},
-                               {"maps", maps},
-                               {"method", Document::parse(description.method_json)}};
+    Document document = {{"format", "facezip-package"},
+                         {"version", kFormatVersion},
+                         {"generator", description.generator},
+                         {"name", description.name},
+                         {"expressions", description.expressions},
+                         {"differences", description.differences},
+                         {"weights", weight_sets},
+                         {"maps", maps},
+                         {"method", Document::parse(description.method_json)}};
+    addGuides(description, document);
     return document.dump(2) + "\n";
   } catch (const Document::exception& error) {
     throw InputError({kDescriptionFile, "", "names in UTF-8 and a method record that is JSON", error.what(), ""});
@@ -271,6 +245,7 @@ PackageDescription parsePackageJson(const std::string& text, const std::string& 
   }
   requireUnique(names, "map");
   requireUsed(weight_sets, description.maps);
+  parseGuides(document, description);
   description.method_json = document["method"].object().dump();
   return description;
 }

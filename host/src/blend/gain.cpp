@@ -1,0 +1,139 @@
+#include "facezip/gain.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+#include "image/image_file.hpp"
+#include "package/guides.hpp"
+#include "package/json_field.hpp"
+#include "package/package_json.hpp"
+
+namespace facezip {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr double kLargestGain = 16.0;
+
+std::string readText(const fs::path& file) {
+  constexpr std::uintmax_t kLargest = 16u << 20;
+  std::error_code error;
+  const std::uintmax_t bytes = fs::file_size(file, error);
+  std::ifstream stream(file, std::ios::binary);
+  if (error || !stream) {
+    throw InputError({file.string(), "", "a preset that `facezip view` saved", "no such file", ""});
+  }
+  if (bytes > kLargest) {
+    throw InputError({file.string(), "", fmt::format("at most {} bytes", kLargest), fmt::format("{}", bytes), ""});
+  }
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+void requirePresetOf(const package::JsonField& document, const Package& package) {
+  const package::JsonField format = document["format"];
+  if (format.text() != "facezip-gains") format.fail("\"facezip-gains\"", format.got(), "is this a preset of gains?");
+  document["version"].integer(1, 1);
+  const package::JsonField name = document["package"];
+  if (name.text() != package.name()) {
+    name.fail(fmt::format("{}, the package's name", package::quoted(package.name())), name.got(),
+              "gains belong to the package they were tuned on: make the preset with this one");
+  }
+}
+
+/// Sets the gains of the names that `field` holds.
+void readFactors(const package::JsonField& field, const std::vector<std::string>& names, const char* what,
+                 std::vector<float>& gains) {
+  for (const auto& [name, value] : field.object().items()) {
+    const auto found = std::ranges::find(names, name);
+    if (found == names.end()) {
+      field.fail(fmt::format("{}s of the package ({})", what, fmt::join(names, ", ")), package::quoted(name));
+    }
+    gains[static_cast<std::size_t>(found - names.begin())] =
+        static_cast<float>(field[name.c_str()].number(0.0, kLargestGain));
+  }
+}
+
+/// 1 + sum over regions of (gain - 1) R, on the cells of the masks.
+std::vector<float> gainOfMaskCells(const Package& package, const std::vector<float>& regions) {
+  const PackageMasks& masks = *package.description().masks;
+  const image::Image picture = image::readImage(package.directory() / masks.file);
+  std::vector<float> gain(static_cast<std::size_t>(masks.tile_width * masks.tile_height), 1.0f);
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    if (regions[r] == 1.0f) continue;
+    for (const int k : package.description().regions[r].masks) {
+      for (int y = 0; y < masks.tile_height; ++y) {
+        for (int x = 0; x < masks.tile_width; ++x) {
+          const int row = k / masks.columns * masks.tile_height + y;
+          const int column = k % masks.columns * masks.tile_width + x;
+          const auto code = picture.samples[static_cast<std::size_t>(row * picture.shape.width + column)];
+          gain[static_cast<std::size_t>(y * masks.tile_width + x)] +=
+              (regions[r] - 1.0f) * static_cast<float>(std::to_integer<int>(code)) / 255.0f;
+        }
+      }
+    }
+  }
+  return gain;
+}
+
+/// Bilinear, where a set has another number of cells than the masks; exact where it has the same.
+std::vector<float> resample(const std::vector<float>& gain, const PackageMasks& masks, const PackageWeights& set) {
+  const auto position = [](int cell, int cells, int mask_cells) {
+    const float at = (static_cast<float>(cell) + 0.5f) * static_cast<float>(mask_cells) / static_cast<float>(cells);
+    return std::clamp(at - 0.5f, 0.0f, static_cast<float>(mask_cells - 1));
+  };
+  const auto at = [&](int x, int y) {
+    return gain[static_cast<std::size_t>(std::min(y, masks.tile_height - 1) * masks.tile_width +
+                                         std::min(x, masks.tile_width - 1))];
+  };
+  std::vector<float> cells;
+  for (int y = 0; y < set.tile_height; ++y) {
+    const float v = position(y, set.tile_height, masks.tile_height);
+    const int row = static_cast<int>(v);
+    for (int x = 0; x < set.tile_width; ++x) {
+      const float u = position(x, set.tile_width, masks.tile_width);
+      const int column = static_cast<int>(u);
+      const float above = std::lerp(at(column, row), at(column + 1, row), u - static_cast<float>(column));
+      const float below = std::lerp(at(column, row + 1), at(column + 1, row + 1), u - static_cast<float>(column));
+      cells.push_back(std::lerp(above, below, v - static_cast<float>(row)));
+    }
+  }
+  return cells;
+}
+
+}  // namespace
+
+Gain unitGain(const Package& package) {
+  Gain gain;
+  gain.expressions.assign(package.expressions().size(), 1.0f);
+  gain.regions.assign(package.description().regions.size(), 1.0f);
+  gain.cells.resize(package.weightSets().size());
+  return gain;
+}
+
+void applyRegions(const Package& package, Gain& gain) {
+  gain.cells.assign(package.weightSets().size(), {});
+  if (std::ranges::all_of(gain.regions, [](float factor) { return factor == 1.0f; })) return;
+  const std::vector<float> cells = gainOfMaskCells(package, gain.regions);
+  for (std::size_t set = 0; set < gain.cells.size(); ++set) {
+    gain.cells[set] = resample(cells, *package.description().masks, package.weightSets()[set]);
+  }
+}
+
+Gain readGain(const fs::path& file, const Package& package) {
+  const nlohmann::json json = package::parseJson(readText(file), file.string());
+  const package::JsonField document(json, file.string(), "");
+  requirePresetOf(document, package);
+  Gain gain = unitGain(package);
+  readFactors(document["expressions"], package.expressions(), "expression", gain.expressions);
+  std::vector<std::string> regions;
+  for (const PackageRegion& region : package.description().regions) regions.push_back(region.name);
+  readFactors(document["regions"], regions, "region", gain.regions);
+  applyRegions(package, gain);
+  return gain;
+}
+
+}  // namespace facezip

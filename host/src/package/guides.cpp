@@ -1,0 +1,112 @@
+#include "package/guides.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstring>
+#include <fstream>
+#include <set>
+
+#include "package/package_files.hpp"
+#include "package/package_json.hpp"
+#include "package/safe_names.hpp"
+
+namespace facezip::package {
+namespace fs = std::filesystem;
+namespace {
+using Document = nlohmann::ordered_json;
+
+Document masksJson(const PackageMasks& masks) {
+  return {{"file", masks.file},      {"count", masks.count},           {"columns", masks.columns},
+          {"rows", masks.rows},      {"tile_width", masks.tile_width}, {"tile_height", masks.tile_height},
+          {"samples", masks.samples}};
+}
+
+PackageMasks parseMasks(const JsonField& field) {
+  constexpr int kMostMasks = 1 << 16;
+  PackageMasks masks;
+  masks.file = fileInPackage(field["file"], ".png");
+  masks.count = field["count"].integer(1, kMostMasks);
+  masks.tile_width = field["tile_width"].integer(1, kMostMaskCells);
+  masks.tile_height = field["tile_height"].integer(1, kMostMaskCells);
+  masks.columns = field["columns"].integer(1, kMaxAtlasSide / masks.tile_width);
+  masks.rows = field["rows"].integer(1, kMaxAtlasSide / masks.tile_height);
+  if (masks.columns * masks.rows < masks.count) {
+    field["rows"].fail(fmt::format("tiles for {} masks", masks.count),
+                       fmt::format("{} x {} tiles", masks.columns, masks.rows));
+  }
+  const std::size_t count = static_cast<std::size_t>(masks.count);
+  for (const JsonField& sample : field["samples"].elements(count, count)) {
+    const std::vector<JsonField> uv = sample.elements(2, 2);
+    constexpr double kRoom = 1e-3;  // UVs of exporters pass 0 and 1 by their rounding
+    masks.samples.push_back({uv[0].number(-kRoom, 1.0 + kRoom), uv[1].number(-kRoom, 1.0 + kRoom)});
+  }
+  return masks;
+}
+
+std::vector<PackageRegion> parseRegions(const JsonField& field, int mask_count) {
+  constexpr std::size_t kMostRegions = 64;
+  std::vector<PackageRegion> regions;
+  std::set<std::string> names;
+  std::set<int> taken;
+  for (const JsonField& element : field.elements(0, kMostRegions)) {
+    PackageRegion& region = regions.emplace_back();
+    region.name = fileSafeName(element["name"]);
+    if (!names.insert(region.name).second)
+      element["name"].fail("unique region names", package::quoted(region.name) + " twice");
+    for (const JsonField& mask : element["masks"].elements(1, static_cast<std::size_t>(mask_count))) {
+      region.masks.push_back(mask.integer(0, mask_count - 1));
+      if (!taken.insert(region.masks.back()).second) mask.fail("a mask that no other region has", mask.got());
+    }
+  }
+  return regions;
+}
+
+/// The header of glTF's binary form names its own length: a file that was cut does not keep the promise.
+std::uint64_t checkMesh(const fs::path& file) {
+  std::array<std::uint32_t, 3> header = {};
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream)
+    throw InputError({file.string(), "", "the mesh of the package", "no such file", "write the package again"});
+  stream.read(reinterpret_cast<char*>(header.data()), sizeof(header));
+  const std::uintmax_t bytes = fs::file_size(file);
+  if (!stream || std::memcmp(header.data(), "glTF", 4) != 0 || header[1] != 2 || header[2] != bytes) {
+    throw InputError({file.string(), "", "a whole binary glTF 2.0 file", fmt::format("{} bytes that are none", bytes),
+                      "the file is truncated or damaged: write the package again"});
+  }
+  return bytes;
+}
+
+}  // namespace
+
+void addGuides(const PackageDescription& description, Document& document) {
+  if (!description.mesh_file.empty()) document["mesh"] = {{"file", description.mesh_file}};
+  if (description.masks) document["masks"] = masksJson(*description.masks);
+  if (description.regions.empty()) return;
+  Document regions = Document::array();
+  for (const PackageRegion& region : description.regions) {
+    regions.push_back({{"name", region.name}, {"masks", region.masks}});
+  }
+  document["regions"] = regions;
+}
+
+void parseGuides(const JsonField& document, PackageDescription& description) {
+  if (document.has("mesh")) description.mesh_file = fileInPackage(document["mesh"]["file"], ".glb");
+  if (document.has("masks")) description.masks = parseMasks(document["masks"]);
+  if (!document.has("regions")) return;
+  if (!description.masks) document["regions"].fail("masks that regions are made of", "no field masks");
+  description.regions = parseRegions(document["regions"], description.masks->count);
+}
+
+image::ImageShape masksShape(const PackageMasks& masks) {
+  return {masks.columns * masks.tile_width, masks.rows * masks.tile_height, 1, image::SampleType::kUint8};
+}
+
+std::uint64_t checkGuides(const PackageDescription& description, const fs::path& directory) {
+  std::uint64_t bytes = 0;
+  if (!description.mesh_file.empty()) bytes += checkMesh(directory / description.mesh_file);
+  if (description.masks) bytes += checkImage(directory / description.masks->file, masksShape(*description.masks));
+  return bytes;
+}
+
+}  // namespace facezip::package

@@ -1,0 +1,30 @@
+// guides.hpp - what a package may hold beside what frames need: mesh, masks and named regions (docs/package_format.md).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "facezip/package.hpp"
+#include "image/image_file.hpp"
+#include "package/json_field.hpp"
+
+namespace facezip::package {
+
+inline constexpr char kMeshFile[] = "mesh.glb";
+inline constexpr char kMasksFile[] = "masks.png";
+inline constexpr int kMostMaskCells = 128;  ///< along a side: masks are smooth
+
+/// Puts the fields `mesh`, `masks` and `regions` of what `description` has into `document`.
+void addGuides(const PackageDescription& description, nlohmann::ordered_json& document);
+
+/// Reads them, where they are. Throws InputError.
+void parseGuides(const JsonField& document, PackageDescription& description);
+
+/// Size of the image of the masks.
+image::ImageShape masksShape(const PackageMasks& masks);
+
+/// Checks that mesh and masks are there and not cut short. Returns their bytes. Throws InputError that names the file.
+std::uint64_t checkGuides(const PackageDescription& description, const std::filesystem::path& directory);
+
+}  // namespace facezip::package

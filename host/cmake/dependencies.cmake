@@ -1,4 +1,4 @@
-# Every dependency is a Debian package; nothing is downloaded.
+# Every dependency is a Debian package, but what the page of `facezip view` bundles: npm fetches that at build time.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(CGAL 5.5 REQUIRED)
 find_package(tinyobjloader REQUIRED)
@@ -17,6 +17,10 @@ find_package(CLI11 REQUIRED)
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(fmt REQUIRED)
 find_package(TinyGLTF REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(httplib REQUIRED IMPORTED_TARGET cpp-httplib)
+find_program(FACEZIP_NODE node REQUIRED)
+find_program(FACEZIP_NPM npm REQUIRED)
 if(FACEZIP_BUILD_TESTS)
   find_package(GTest REQUIRED)
 endif()

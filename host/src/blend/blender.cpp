@@ -46,18 +46,26 @@ struct Blender::State {
   std::vector<PackageMap> maps;
   std::vector<std::shared_ptr<blend::WeightMaps>> weights;  // per set
   std::vector<std::deque<blend::TextureRows>> textures;     // per map
-  std::vector<float> gains;                                 // of expressions; empty: all 1
+  std::vector<float> gains;                                 // N, of expressions
+  std::vector<float> tuned;                                 // N: frames allocate nothing
 
   blend::WeightMaps& weightsOf(std::size_t map) { return *weights[static_cast<std::size_t>(maps[map].weight_set)]; }
 };
 
 Blender::Blender(const Package& package, const Device& device)
-    : state_(std::make_unique<State>(State{
-          device, package.expressions(), package.maps(), blend::loadWeightMaps(package, device.context()), {}, {}})) {
+    : state_(std::make_unique<State>(State{device,
+                                           package.expressions(),
+                                           package.maps(),
+                                           blend::loadWeightMaps(package, device.context()),
+                                           {},
+                                           {},
+                                           {}})) {
   for (std::size_t m = 0; m < state_->maps.size(); ++m) {
     const blend::WeightGrid& grid = state_->weightsOf(m).grid();
     state_->textures.push_back(loadMap(package, static_cast<int>(m), grid, device.context()));
   }
+  state_->gains.assign(state_->expressions.size(), 1.0f);
+  state_->tuned.resize(state_->expressions.size());
   setWeights(std::vector<float>(state_->expressions.size(), 0.0f));
 }
 
@@ -67,9 +75,8 @@ Blender& Blender::operator=(Blender&&) noexcept = default;
 
 void Blender::setWeights(std::span<const float> beta) {
   blend::requireWeights(beta, state_->expressions);
-  std::vector<float> weights(beta.begin(), beta.end());
-  for (std::size_t n = 0; n < state_->gains.size(); ++n) weights[n] *= state_->gains[n];
-  for (const std::shared_ptr<blend::WeightMaps>& set : state_->weights) set->blend(weights);
+  for (std::size_t n = 0; n < beta.size(); ++n) state_->tuned[n] = beta[n] * state_->gains[n];
+  for (const std::shared_ptr<blend::WeightMaps>& set : state_->weights) set->blend(state_->tuned);
 }
 
 void Blender::setGain(const Gain& gain) {

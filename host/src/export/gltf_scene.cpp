@@ -64,6 +64,8 @@ class Accessors {
     }
     tinygltf::Accessor accessor = describe(values, 3, with_bounds);
     accessor.sparse.isSparse = true;
+    accessor.sparse.indices.byteOffset = 0;  // tinygltf leaves both uninitialised
+    accessor.sparse.values.byteOffset = 0;
     accessor.sparse.count = static_cast<int>(indices.size());
     accessor.sparse.indices.componentType = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
     accessor.sparse.indices.bufferView = addView(std::as_bytes(std::span(indices)), 0);

@@ -1,0 +1,27 @@
+// view.hpp - the page that shows a package: a head in a browser, with sliders (host/viewer).
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "facezip/package.hpp"
+
+namespace facezip {
+
+/// Files of the page by name ("index.html", "viewer.js", "viewer.css"); they lie in the library. The page fetches the
+/// files of the package from the folder `package` beside it.
+const std::map<std::string_view, std::string_view>& viewerPage();
+
+/// Names of the files of a package, relative to it, package.json first: what a page may read.
+std::vector<std::string> packageFiles(const Package& package);
+
+/// Writes a folder whose index.html shows the package in a browser, from a server or straight from disk: browsers let
+/// no page fetch files from disk, so that the package's are written as scripts. The folder appears whole or not at all;
+/// one that was written by this function before is replaced.
+/// Throws OutputError.
+void writeViewer(const Package& package, const std::filesystem::path& output);
+
+}  // namespace facezip

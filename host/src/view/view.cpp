@@ -1,0 +1,82 @@
+#include "facezip/view.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "io/staged_directory.hpp"
+#include "package/package_json.hpp"
+#include "view/viewer_files.hpp"
+
+namespace facezip {
+namespace fs = std::filesystem;
+namespace {
+
+/// RFC 4648.
+std::string base64(std::string_view bytes) {
+  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t group = 0;
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    for (std::size_t b = 0; b < 3; ++b) {
+      group = group << 8 | (b < count ? static_cast<unsigned char>(bytes[i + b]) : 0u);
+    }
+    for (std::size_t digit = 0; digit < 4; ++digit) {
+      text += digit <= count ? kDigits[group >> (18 - 6 * digit) & 63u] : '=';
+    }
+  }
+  return text;
+}
+
+std::string readBytes(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!stream) throw InputError({file.string(), "", "a readable file", "a read error", ""});
+  return bytes;
+}
+
+/// Tells the page, before its script runs, that the package's files are scripts.
+std::string pageOnDisk(std::string_view page) {
+  constexpr std::string_view kBefore = "<script src=\"viewer.js\">";
+  std::string text(page);
+  text.insert(text.find(kBefore), "<script>globalThis.facezipScripts = true;</script>\n");
+  return text;
+}
+
+}  // namespace
+
+const std::map<std::string_view, std::string_view>& viewerPage() { return view::embeddedViewerFiles(); }
+
+std::vector<std::string> packageFiles(const Package& package) {
+  const PackageDescription& description = package.description();
+  std::vector<std::string> files = {package::kDescriptionFile};
+  if (!description.mesh_file.empty()) files.push_back(description.mesh_file);
+  if (description.masks) files.push_back(description.masks->file);
+  for (const PackageWeights& set : description.weights) files.insert(files.end(), set.files.begin(), set.files.end());
+  for (const PackageMap& map : description.maps) {
+    files.push_back(map.neutral_file);
+    for (const PackageDifference& difference : map.differences) files.push_back(difference.file);
+  }
+  return files;
+}
+
+void writeViewer(const Package& package, const fs::path& output) {
+  io::StagedDirectory staged(output, io::StagedDirectory::Existing::kReplaceMarked, "viewer.js");
+  for (const auto& [name, text] : viewerPage()) {
+    io::writeTextFile(staged.path() / name, name == "index.html" ? pageOnDisk(text) : std::string(text));
+  }
+  for (const std::string& name : packageFiles(package)) {
+    const fs::path file = staged.path() / "package" / (name + ".js");
+    io::createDirectories(file.parent_path());
+    io::writeTextFile(file, fmt::format("facezipFile({},\"{}\")\n", nlohmann::json(name).dump(),
+                                        base64(readBytes(package.directory() / name))));
+  }
+  staged.commit();
+}
+
+}  // namespace facezip

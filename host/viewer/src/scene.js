@@ -1,0 +1,91 @@
+// The head on its turntable, or a flat sheet of texture.
+import * as THREE from 'three';
+import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
+import { readFile } from './files.js';
+import { memory } from './blend.js';
+
+export class HeadScene {
+  constructor(canvas) {
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+    this.renderer.toneMapping = THREE.NoToneMapping;
+    this.scene = new THREE.Scene();
+    this.scene.background = new THREE.Color(0x202124);
+    this.camera = new THREE.PerspectiveCamera(28, 1, 0.001, 1000);
+    this.scene.add(new THREE.HemisphereLight(0xffffff, 0x555555, 1.6));
+    const key = new THREE.DirectionalLight(0xffffff, 2.2);
+    key.position.set(0.6, 0.8, 1);
+    this.camera.add(key);  // the light stays with the viewer: wrinkles show as the head turns
+    this.scene.add(this.camera);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.enableDamping = true;
+    this.sheet = new THREE.Mesh(new THREE.PlaneGeometry(1, 1));
+    const uv = this.sheet.geometry.attributes.uv;
+    for (let i = 0; i < uv.count; ++i) uv.setY(i, 1 - uv.getY(i));  // row 0 on top
+    this.scene.add(this.sheet);
+  }
+
+  /** Loads mesh.glb. Returns the names of its morph targets. */
+  async loadMesh(file) {
+    const bytes = await readFile(file);
+    const gltf = await new GLTFLoader().parseAsync(bytes.buffer, '');
+    gltf.scene.traverse((node) => { if (node.isMesh) this.head = node; });
+    this.scene.add(this.head);
+    const { geometry } = this.head;
+    geometry.computeBoundingSphere();
+    const count = geometry.attributes.position.count;
+    const targets = geometry.morphAttributes.position?.length ?? 0;
+    memory.bytes += count * 32 + (geometry.index?.count ?? 0) * 4 + count * 32 * targets;  // morphs: RGBA32F, normals too
+    return Object.keys(this.head.morphTargetDictionary ?? {});
+  }
+
+  setMorphs(names, weights) {
+    if (!this.head?.morphTargetDictionary) return;
+    names.forEach((name, n) => {
+      const index = this.head.morphTargetDictionary[name];
+      if (index !== undefined) this.head.morphTargetInfluences[index] = weights[n];
+    });
+  }
+
+  /** Shows the head, or a sheet of the given proportions, and looks at it from the front. */
+  show(flat, aspect) {
+    this.flat = flat || !this.head;
+    this.sheet.visible = this.flat;
+    if (this.head) this.head.visible = !this.flat;
+    this.sheet.scale.set(aspect, 1, 1);
+    this.frame();
+  }
+
+  frame() {
+    const { center, radius } = this.flat
+      ? { center: new THREE.Vector3(), radius: 0.56 }
+      : this.head.geometry.boundingSphere;
+    this.controls.target.copy(center);
+    const half = Math.tan((this.camera.fov * Math.PI) / 360) * Math.min(1, this.camera.aspect);
+    this.camera.position.copy(center).add(new THREE.Vector3(0, 0, (1.05 * radius) / half));
+    this.camera.near = radius / 100;
+    this.camera.far = radius * 100;
+    this.camera.updateProjectionMatrix();
+    this.controls.update();
+  }
+
+  setMaterial(material) {
+    this.material?.dispose();
+    this.material = material;
+    this.sheet.material = material;
+    if (this.head) this.head.material = material;
+  }
+
+  /** Fits the canvas, less the width that the panel covers. */
+  resize(covered) {
+    const width = Math.max(64, window.innerWidth - covered);
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.renderer.setSize(width, window.innerHeight);
+    this.camera.aspect = width / window.innerHeight;
+    this.camera.updateProjectionMatrix();
+  }
+
+  render() {
+    this.renderer.render(this.scene, this.camera);
+  }
+}

@@ -1,0 +1,16 @@
+# Puts the header into the shaders of this folder and compiles them.
+file(MAKE_DIRECTORY ${WORK})
+file(READ ${HEADER} header)
+foreach(shader check.frag check_es.frag check.hlsl)
+  string(REGEX REPLACE "_es" "" source ${shader})
+  file(READ ${SOURCES}/${source} text)
+  string(REPLACE "#include \"facezip_blend.h\"" "#define FZ_DIFFERENCES ${DIFFERENCES}\n${header}" text "${text}")
+  if(shader STREQUAL check_es.frag)
+    string(REPLACE "#version 330" "#version 300 es\nprecision highp float;\nprecision highp sampler2DArray;" text "${text}")
+  endif()
+  file(WRITE ${WORK}/${shader} "${text}")
+endforeach()
+execute_process(COMMAND ${GLSLANG} ${WORK}/check.frag COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${GLSLANG} ${WORK}/check_es.frag COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${GLSLANG} -D -e main -S frag -V --auto-map-bindings -o ${WORK}/check.spv ${WORK}/check.hlsl
+                COMMAND_ERROR_IS_FATAL ANY)

@@ -1,0 +1,11 @@
+# Packages for the tests of the viewer and of exports: cmake -DFACEZIP=... -DOUTPUT=... -P make_packages.cmake
+function(facezip)
+  execute_process(COMMAND ${FACEZIP} --quiet ${ARGN} OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+file(REMOVE_RECURSE ${OUTPUT})
+file(MAKE_DIRECTORY ${OUTPUT})
+facezip(synth --output ${OUTPUT}/capture --resolution 128 --expressions 6)
+facezip(compress ${OUTPUT}/capture --output ${OUTPUT}/head --restarts 10)
+facezip(compress ${OUTPUT}/capture --output ${OUTPUT}/bare --restarts 10 --maps albedo --no-mesh)
+facezip(synth --output ${OUTPUT}/many_capture --resolution 64 --expressions 100 --maps albedo)
+facezip(compress ${OUTPUT}/many_capture --output ${OUTPUT}/many --restarts 5 --differences 5)

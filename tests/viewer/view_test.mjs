@@ -1,0 +1,246 @@
+// The page of `facezip view` in Chromium: node view_test.mjs FACEZIP CHROMIUM PACKAGES WORK_DIRECTORY
+// PACKAGES holds what make_packages.cmake made: head, bare (no mesh, no normals) and many (100 expressions).
+// Screenshots stay in WORK_DIRECTORY.
+import assert from 'node:assert/strict';
+import { execFileSync, spawn } from 'node:child_process';
+import { mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { pathToFileURL } from 'node:url';
+import { decode } from 'fast-png';
+import { chromium } from 'playwright-core';
+
+const [facezip, browserPath, packages, work] = process.argv.slice(2);
+const packagePath = join(packages, 'head');
+rmSync(work, { recursive: true, force: true });
+mkdirSync(work, { recursive: true });
+const description = JSON.parse(readFileSync(join(packagePath, 'package.json')));
+const names = description.expressions;
+
+/** Serves a package on a free port; { url, stop }. */
+async function serve(path) {
+  const server = spawn(facezip, ['view', path, '--port', '0'], { stdio: ['ignore', 'pipe', 'inherit'] });
+  const line = await new Promise((resolve, reject) => {
+    server.stdout.once('data', (data) => resolve(String(data)));
+    server.once('exit', (code) => reject(new Error(`facezip view ended with ${code}`)));
+  });
+  server.stdout.resume();
+  return { url: line.match(/http:\S+/)[0], stop: () => server.kill('SIGINT') };
+}
+
+/** Opens a page and waits until it shows the package, or its message; console errors are kept in page.errors. */
+async function open(browser, url, ready = true) {
+  const page = await browser.newPage({ viewport: { width: 900, height: 640 } });
+  page.errors = [];
+  page.on('console', (message) => { if (message.type() === 'error') page.errors.push(message.text()); });
+  page.on('pageerror', (error) => page.errors.push(String(error)));
+  page.on('request', (request) => {
+    const { protocol, hostname } = new URL(request.url());
+    const local = protocol === 'data:' || protocol === 'blob:' || protocol === 'file:' || hostname === '127.0.0.1';
+    if (!local) page.errors.push(`loads ${request.url()}`);
+  });
+  await page.goto(url);
+  if (ready) await page.evaluate(() => globalThis.facezip.ready);
+  return page;
+}
+
+/** Largest difference of what the shader computes to what `facezip blend` writes, per map, in 1/255. */
+async function blendDifference(page, weights, gain) {
+  const pattern = join(work, 'blend', '{map}.png');
+  const given = Object.entries(weights).map(([name, weight]) => `${name}=${weight}`).join(',');
+  execFileSync(facezip, ['blend', packagePath, '--weights', given, '--output', pattern, ...gain]);
+  let largest = 0;
+  for (const [index, map] of description.maps.entries()) {
+    const expected = decode(readFileSync(pattern.replace('{map}', map.name)));
+    const baked = Buffer.from(await page.evaluate(([beta, i]) => {
+      globalThis.facezip.setWeights(beta);
+      // As text: an array of a million numbers takes minutes to come over.
+      return Array.from(globalThis.facezip.bake(i), (byte) => String.fromCharCode(byte)).join('');
+    }, [weights, index]), 'latin1');
+    assert.equal(baked.length, 4 * map.width * map.height);
+    const most = map.sample_type === '16-bit' ? 65535 : 255;
+    for (let p = 0; p < map.width * map.height; ++p) {
+      for (let c = 0; c < Math.min(map.channels, 3); ++c) {
+        const wanted = (expected.data[p * expected.channels + c] * 255) / most;
+        largest = Math.max(largest, Math.abs(wanted - baked[4 * p + c]));
+      }
+    }
+  }
+  return largest;
+}
+
+async function screenshot(page, name) {
+  await page.waitForFunction(() => globalThis.facezip.settled);
+  return page.screenshot({ path: join(work, `${name}.png`) });
+}
+
+/** Share of pixels left of the panel that differ. */
+function changedShare(before, after) {
+  const [a, b] = [decode(before), decode(after)];
+  let changed = 0, count = 0;
+  for (let y = 0; y < a.height - 40; ++y) {
+    for (let x = 0; x < a.width - 330; ++x, ++count) {
+      const i = (y * a.width + x) * a.channels;
+      if (Math.abs(a.data[i] - b.data[i]) + Math.abs(a.data[i + 1] - b.data[i + 1]) > 8) ++changed;
+    }
+  }
+  return changed / count;
+}
+
+async function moveSlider(page, parent, name, value) {
+  await page.locator(`${parent} input[name="${name}"]`).evaluate((input, to) => {
+    input.value = to;
+    input.dispatchEvent(new Event('input'));
+  }, value);
+}
+
+const tests = {
+  async 'sliders move the picture'(page) {
+    const neutral = await screenshot(page, 'neutral');
+    await moveSlider(page, '#expressions', names[0], 1);
+    const moved = await screenshot(page, 'expression');
+    assert.ok(changedShare(neutral, moved) > 0.005, `only ${changedShare(neutral, moved)} of the picture changed`);
+    await page.click('#neutral');
+    assert.equal(changedShare(neutral, await screenshot(page, 'neutral_again')), 0);
+    await page.click('#random');
+    assert.ok((await page.locator('#expressions output').allTextContents()).some((value) => Number(value) > 0));
+    await page.selectOption('#preset', names[1]);
+    assert.equal(await page.locator(`#expressions input[name="${names[1]}"]`).inputValue(), '1');
+  },
+
+  async 'the shader computes what facezip blend does'(page) {
+    const vectors = [{}, { [names[0]]: 1 }, { [names[1]]: 0.37, [names[3]]: 0.8 },
+      Object.fromEntries(names.map((name, n) => [name, ((n * 37) % 100) / 250]))];
+    for (const weights of vectors) {
+      const largest = await blendDifference(page, weights, []);
+      console.log(`  largest difference ${largest}/255 at ${JSON.stringify(weights).slice(0, 60)}`);
+      assert.ok(largest <= 1.5, `${largest}/255`);
+      if (Object.keys(weights).length === 0) assert.equal(largest, 0);
+    }
+  },
+
+  async 'gains are saved, and blend --gain agrees'(page) {
+    await moveSlider(page, '#gains', names[0], 1.8);
+    const regions = (description.regions ?? []).map((region) => region.name);
+    for (const [r, name] of regions.entries()) await moveSlider(page, '#regions', name, 0.25 * (r % 7));
+    const [download] = await Promise.all([page.waitForEvent('download'), page.click('#save')]);
+    const preset = join(work, 'gains.json');
+    await download.saveAs(preset);
+    const saved = JSON.parse(readFileSync(preset));
+    assert.equal(saved.expressions[names[0]], 1.8);
+    assert.equal(saved.regions[regions[1]], 0.25);
+    const largest = await blendDifference(page, { [names[0]]: 0.5, [names[2]]: 0.9 }, ['--gain', preset]);
+    console.log(`  largest difference with gains ${largest}/255`);
+    assert.ok(largest <= 1.5, `${largest}/255`);
+    await page.click('#reset');
+    assert.ok(await blendDifference(page, { [names[0]]: 0.5, [names[2]]: 0.9 }, ['--gain', preset]) > 4);
+    await page.setInputFiles('#load', preset);
+    await page.waitForFunction(() => document.getElementById('note').textContent.includes('in force'));
+    assert.deepEqual(await page.evaluate(() => globalThis.facezip.preset), saved);
+    writeFileSync(join(work, 'other.json'), JSON.stringify({ ...saved, package: 'another face' }));
+    await page.setInputFiles('#load', join(work, 'other.json'));
+    await page.waitForFunction(() => document.getElementById('note').textContent.includes('another face'));
+    await page.click('#reset');
+  },
+
+  async 'a clip plays'(page) {
+    const clip = join(work, 'clip.csv');
+    writeFileSync(clip, `frame,${names[2]},${names[0]}\n0,0.25,0.5\n1,0.25,0.5\n`);
+    await page.setInputFiles('#clip', clip);
+    await page.waitForFunction(([name]) => document.querySelector(`#expressions input[name="${name}"]`).value === '0.25', [names[2]]);
+    assert.equal(await page.locator(`#expressions input[name="${names[0]}"]`).inputValue(), '0.5');
+    writeFileSync(clip, 'nobody\n1\n');
+    await page.setInputFiles('#clip', clip);
+    await page.waitForFunction(() => document.getElementById('note').textContent.includes('"nobody"'));
+    await page.click('#neutral');
+  },
+
+  async 'every view draws something of its own'(page) {
+    await moveSlider(page, '#expressions', names[0], 1);
+    let before = await screenshot(page, 'shaded');
+    for (const mode of await page.locator('#mode option').evaluateAll((all) => all.map((option) => option.value))) {
+      if (mode === 'shaded') continue;
+      await page.selectOption('#mode', mode);
+      const shown = await screenshot(page, mode);
+      assert.ok(changedShare(before, shown) > 0.02, `${mode} looks like the view before it`);
+      before = shown;
+    }
+    await page.check('#flat');
+    await screenshot(page, 'flat');
+    await page.selectOption('#mode', 'shaded');
+    await page.uncheck('#flat');
+  },
+
+  async 'it says what it costs'(page) {
+    await page.waitForFunction(() => /\d+ frames\/s\s+[\d.]+ MB/.test(document.getElementById('stats').textContent));
+    console.log(`  ${await page.locator('#stats').textContent()}`);
+  },
+};
+
+// Software rendering: no machine that runs tests needs a GPU.
+const browser = await chromium.launch({ executablePath: browserPath,
+  args: ['--no-sandbox', '--use-angle=swiftshader', '--use-gl=angle', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'] });
+let failed = 0;
+async function run(name, body) {
+  try {
+    await body();
+    console.log(`ok   ${name}`);
+  } catch (error) {
+    ++failed;
+    console.log(`FAIL ${name}\n${error.stack}`);
+  }
+}
+
+const server = await serve(packagePath);
+const page = await open(browser, server.url);
+for (const [name, body] of Object.entries(tests)) await run(name, () => body(page));
+await run('no console errors, nothing loaded from elsewhere', () => assert.deepEqual(page.errors, []));
+await page.close();
+
+await run('it says when there is no WebGL 2', async () => {
+  const without = await browser.newPage();
+  await without.addInitScript(() => {
+    const get = HTMLCanvasElement.prototype.getContext;
+    HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+      return kind === 'webgl2' ? null : get.call(this, kind, ...rest);
+    };
+  });
+  await without.goto(server.url);
+  await without.waitForSelector('#message:not([hidden])');
+  assert.match(await without.locator('#message').textContent(), /needs WebGL 2/);
+  await without.close();
+});
+server.stop();
+
+await run('a folder opens without a server', async () => {
+  execFileSync(facezip, ['view', packagePath, '--output', join(work, 'page')]);
+  const local = await open(browser, pathToFileURL(join(work, 'page', 'index.html')).href);
+  await local.evaluate((name) => globalThis.facezip.setWeights({ [name]: 1 }), names[0]);
+  await screenshot(local, 'from_disk');
+  assert.deepEqual(local.errors, []);
+  await local.close();
+});
+await run('a package without mesh and normals is shown flat', async () => {
+  const bare = await serve(join(packages, 'bare'));
+  const flat = await open(browser, bare.url);
+  assert.match(await flat.locator('#note').textContent(), /no mesh/);
+  const before = await screenshot(flat, 'bare');
+  await moveSlider(flat, '#expressions', names[0], 1);
+  assert.ok(changedShare(before, await screenshot(flat, 'bare_moved')) > 0.005);
+  assert.deepEqual(flat.errors, []);
+  await flat.close();
+  bare.stop();
+});
+
+await run('100 expressions', async () => {
+  const many = await serve(join(packages, 'many'));
+  const crowd = await open(browser, many.url);
+  assert.equal(await crowd.locator('#expressions input').count(), 100);
+  const before = await screenshot(crowd, 'many');
+  await crowd.evaluate(() => globalThis.facezip.setWeights({ [globalThis.facezip.expressions[99]]: 1 }));
+  assert.ok(changedShare(before, await screenshot(crowd, 'many_last')) > 0.001);
+  assert.deepEqual(crowd.errors, []);
+  await crowd.close();
+  many.stop();
+});
+await browser.close();
+process.exit(failed ? 1 : 0);

@@ -242,5 +242,21 @@ await run('100 expressions', async () => {
   await crowd.close();
   many.stop();
 });
+await run('the report shows plots, pictures and sliders without a network', async () => {
+  const report = await open(browser, pathToFileURL(join(packages, 'report.html')).href, false);
+  assert.ok(await report.locator('svg.plot path').count() > 8);
+  const images = await report.locator('img').evaluateAll((all) => all.map((image) => image.naturalWidth));
+  assert.ok(images.length > 3 * names.length && images.every((width) => width > 0), `${images}`);
+  await report.locator('.expression input').first().fill('80');
+  assert.match(await report.locator('.pair .over').first().getAttribute('style'), /80%/);
+  for (const heading of ['Quality and memory', 'Convergence of the permutation search', 'Error against the number of masks: albedo']) {
+    assert.equal(await report.getByRole('heading', { name: heading }).count(), 1, heading);
+  }
+  await report.screenshot({ path: join(work, 'report.png'), fullPage: true });
+  await report.setViewportSize({ width: 380, height: 700 });
+  assert.ok(await report.evaluate(() => document.documentElement.scrollWidth) <= 380, 'wider than a phone');
+  assert.deepEqual(report.errors, []);
+  await report.close();
+});
 await browser.close();
 process.exit(failed ? 1 : 0);

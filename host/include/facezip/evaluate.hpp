@@ -31,6 +31,8 @@ struct EvaluateOptions {
   bool limit = true;  ///< the best C components of every block of weight_scale x weight_scale texels
   /// Also every method at C = 1, 2, 3, 4: up to 16 compressions more, one after the other.
   bool ablation = false;
+  /// Numbers of masks to compress with, by the package's method and by the paper's: two compressions each.
+  std::vector<int> mask_sweep;
   int blends = 16;  ///< R, random weight vectors to blend; 0: none
   /// Collects small images of every expression and of its errors, for a picture: Evaluation::pictures.
   bool pictures = false;
@@ -86,6 +88,19 @@ struct ErrorPictures {
   std::vector<std::vector<std::vector<float>>> errors;
 };
 
+/// The search for the permutation, as the paper's method with the package's settings ran it.
+struct PermutationSearch {
+  double cost = 0.0;                             ///< that was taken (Eq. 3), (1/255)^2
+  std::optional<double> bound;                   ///< no permutation costs less
+  std::vector<std::vector<double>> convergence;  ///< cost after each sweep, per restart
+};
+
+/// What compressing with another number of masks gives.
+struct MaskSweepPoint {
+  int masks = 0;
+  std::map<std::string, std::vector<double>> rmse;  ///< by method, one for each map, pooled over expressions
+};
+
 /// Methods are named "package" (as decoded from disk), "no_permutation", "paper", "closed_loop", "refined" (packages of
 /// these methods; the package's own method is an entry too, equal to "package"), "weights_per_map" (equal to "package"
 /// where its maps do not share weights), "pca4", "pca8" and "limit".
@@ -113,6 +128,8 @@ struct Evaluation {
   /// R weight vectors that were blended, N values each, in the package's order.
   std::vector<std::vector<float>> blend_weights;
   std::optional<ErrorPictures> pictures;
+  std::optional<PermutationSearch> search;              ///< where a baseline that permutes was compressed
+  std::vector<MaskSweepPoint> mask_sweep;               ///< as asked for
   std::vector<std::pair<std::string, double>> seconds;  ///< wall time of each stage
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "compress/covered_texels.hpp"
@@ -71,6 +72,27 @@ void addAblation(const Subject& subject, Evaluation& evaluation) {
     }
   }
   evaluation.ablation_bytes["limit"] = evaluation.ablation_bytes.at(methodKey(Method::kPaper));
+}
+
+void addMaskSweep(const Subject& subject, const std::vector<int>& masks, Evaluation& evaluation) {
+  std::vector<int> rising = masks;
+  std::ranges::sort(rising);
+  const auto [repeated, end] = std::ranges::unique(rising);
+  rising.erase(repeated, end);
+  for (const int count : rising) {
+    MaskSweepPoint& point = evaluation.mask_sweep.emplace_back();
+    point.masks = count;
+    for (const Method method : {subject.recorded.method, Method::kPaper}) {
+      const std::string key = methodKey(method);
+      if (point.rmse.contains(key)) continue;
+      CompressOptions options = subject.recorded;
+      options.method = method;
+      options.masks = count;
+      const std::string label = fmt::format("{}, {} masks", key, count);
+      const TemporaryPackage temporary(subject.capture, options, label, subject.device, subject.progress);
+      point.rmse[key] = measurePackage(subject, temporary.package(), label);
+    }
+  }
 }
 
 }  // namespace facezip::evaluate

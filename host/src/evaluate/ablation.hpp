@@ -12,6 +12,9 @@ namespace facezip::evaluate {
 /// Throws what compressCapture() throws, InputError, DeviceError, Cancelled.
 void addAblation(const Subject& subject, Evaluation& evaluation);
 
+/// Adds a point of Evaluation::mask_sweep for every number of masks, by the package's method and the paper's.
+void addMaskSweep(const Subject& subject, const std::vector<int>& masks, Evaluation& evaluation);
+
 inline constexpr int kMostAblated = 4;
 
 }  // namespace facezip::evaluate

@@ -44,7 +44,7 @@ TemporaryPackage::TemporaryPackage(const Capture& capture, const CompressOptions
                                    const Device& device, Progress& progress)
     : staged_(fs::temp_directory_path() / "facezip-baseline", io::StagedDirectory::Existing::kMerge) {
   LabelledProgress labelled(label, progress);
-  compressCapture(capture, staged_.path() / "package", options, device, labelled);
+  report_ = compressCapture(capture, staged_.path() / "package", options, device, labelled);
   package_ = std::make_unique<Package>(Package::open(staged_.path() / "package"));
 }
 

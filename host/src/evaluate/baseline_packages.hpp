@@ -21,9 +21,11 @@ class TemporaryPackage {
   TemporaryPackage(const Capture& capture, const CompressOptions& options, const std::string& label,
                    const Device& device, Progress& progress);
   const Package& package() const { return *package_; }
+  const CompressReport& report() const { return report_; }
 
  private:
   io::StagedDirectory staged_;  // never committed: the destructor removes it
+  CompressReport report_;
   std::unique_ptr<Package> package_;
 };
 

@@ -87,6 +87,10 @@ class Evaluator {
       addAblation(subject_, evaluation_);
       clock_.book("ablation");
     }
+    if (!options_.mask_sweep.empty()) {
+      addMaskSweep(subject_, options_.mask_sweep, evaluation_);
+      clock_.book("mask sweep");
+    }
     evaluation_.seconds = clock_.seconds();
     return evaluation_;
   }
@@ -124,6 +128,10 @@ class Evaluator {
   void addCandidate(const std::string& key, const CompressOptions& options) {
     auto temporary =
         std::make_unique<TemporaryPackage>(subject_.capture, options, key, subject_.device, subject_.progress);
+    const CompressReport& report = temporary->report();
+    if (!report.convergence.empty() && !evaluation_.search) {
+      evaluation_.search = PermutationSearch{report.permutation_cost, report.permutation_bound, report.convergence};
+    }
     auto decoder = std::make_unique<PackageDecoder>(temporary->package(), subject_.device);
     candidates_.push_back({key, std::move(temporary), std::move(decoder)});
     clock_.book("compressing: " + key);

@@ -148,6 +148,9 @@ std::string toJson(const Evaluation& evaluation) {
                  {"bytes", evaluation.bytes},
                  {"blend_weights", json::array()},
                  {"seconds", secondsJson(evaluation.seconds)}};
+  for (const MaskSweepPoint& point : evaluation.mask_sweep) {
+    object["mask_sweep"].push_back({{"masks", point.masks}, {"rmse", point.rmse}});
+  }
   for (const Evaluation::Map& map : evaluation.maps) object["maps"][map.name] = mapJson(map, evaluation);
   for (const std::vector<float>& weights : evaluation.blend_weights) {
     object["blend_weights"].push_back(weightsJson(weights, evaluation.expressions));

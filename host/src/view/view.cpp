@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "io/base64.hpp"
 #include "io/staged_directory.hpp"
 #include "package/package_json.hpp"
 #include "view/viewer_files.hpp"
@@ -14,24 +14,6 @@
 namespace facezip {
 namespace fs = std::filesystem;
 namespace {
-
-/// RFC 4648.
-std::string base64(std::string_view bytes) {
-  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t group = 0;
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    for (std::size_t b = 0; b < 3; ++b) {
-      group = group << 8 | (b < count ? static_cast<unsigned char>(bytes[i + b]) : 0u);
-    }
-    for (std::size_t digit = 0; digit < 4; ++digit) {
-      text += digit <= count ? kDigits[group >> (18 - 6 * digit) & 63u] : '=';
-    }
-  }
-  return text;
-}
 
 std::string readBytes(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -74,7 +56,7 @@ void writeViewer(const Package& package, const fs::path& output) {
     const fs::path file = staged.path() / "package" / (name + ".js");
     io::createDirectories(file.parent_path());
     io::writeTextFile(file, fmt::format("facezipFile({},\"{}\")\n", nlohmann::json(name).dump(),
-                                        base64(readBytes(package.directory() / name))));
+                                        io::base64(readBytes(package.directory() / name))));
   }
   staged.commit();
 }

@@ -1,0 +1,81 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+
+#include "commands.hpp"
+#include "facezip/evaluate.hpp"
+#include "facezip/html_report.hpp"
+#include "option_types.hpp"
+#include "shared_options.hpp"
+#include "terminal.hpp"
+
+namespace facezip::cli {
+namespace {
+
+struct Arguments {
+  std::string capture;
+  std::string package;
+  std::string output;
+  std::string map;
+  std::string compress_report;
+  std::vector<int> mask_sweep;
+  std::string device = "auto";
+  std::string memory = "2GiB";
+};
+
+std::string readText(const std::string& file) {
+  if (file.empty()) return "";
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError({file, "", "what `facezip compress --report` wrote", "no such file", ""});
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+void report(const Arguments& arguments, Progress& progress) {
+  if (std::filesystem::path(arguments.output).extension() != ".html") {
+    throw InputError({"--output", "", "a file name that ends in .html", arguments.output, ""});
+  }
+  const std::string compressed = readText(arguments.compress_report);
+  EvaluateOptions options;
+  options.blends = 0;
+  options.pictures = true;
+  options.picture_map = arguments.map;
+  options.mask_sweep = arguments.mask_sweep;
+  options.memory_bytes = parseBytes("--memory", arguments.memory);
+  const Package package = Package::open(arguments.package);
+  const Device device = openDevice(arguments.device, &progress);
+  const Evaluation evaluation = evaluatePackage(openCapture(arguments.capture), package, options, device, progress);
+  writeHtmlReport(arguments.output, package, evaluation, {device.info().name, compressed});
+  fmt::print("Look at {}\n", arguments.output);
+}
+
+}  // namespace
+
+void addReportCommand(CLI::App& app, const CommonOptions& common) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command =
+      app.add_subcommand("report", "Evaluates a package and writes a page: tables, plots, and captured beside decoded");
+  command->add_option("capture", arguments->capture, "Directory of the capture")->required()->type_name("CAPTURE");
+  command->add_option("package", arguments->package, "Directory of the package")->required()->type_name("PACKAGE");
+  command->add_option("-o,--output", arguments->output, "File of the page")->required()->type_name("FILE.html");
+  command->add_option("--map", arguments->map, "Map of the pictures (default: the first)")->type_name("NAME");
+  command
+      ->add_option("--mask-sweep", arguments->mask_sweep,
+                   "Numbers of masks to compress with and to plot: 8,16,32,64. Two compressions each")
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber)
+      ->type_name("K,...");
+  command->add_option("--compress-report", arguments->compress_report, "What `facezip compress --report` wrote")
+      ->type_name("FILE.json");
+  addDeviceOption(*command, arguments->device);
+  addMemoryOption(*command, arguments->memory);
+  command->callback([arguments, &common] {
+    TerminalProgress progress(common.quiet);
+    const CancelOnSignal cancel(progress);
+    report(*arguments, progress);
+  });
+}
+
+}  // namespace facezip::cli

@@ -1,0 +1,23 @@
+// html_report.hpp - an evaluation as one page to look at: tables, plots, sliders between captured and decoded.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "facezip/evaluate.hpp"
+#include "facezip/package.hpp"
+
+namespace facezip {
+
+struct HtmlReportOptions {
+  std::string device;         ///< name of the device that evaluated
+  std::string compress_json;  ///< what `compress --report` wrote, for its times; "" where it is not at hand
+};
+
+/// Writes a page that holds all it shows: no network, no files beside it. It appears whole or not at all.
+/// evaluation  with pictures (EvaluateOptions::pictures)
+/// Throws InputError for a compress_json that is no such report, or damaged images of the package; OutputError.
+void writeHtmlReport(const std::filesystem::path& file, const Package& package, const Evaluation& evaluation,
+                     const HtmlReportOptions& options);
+
+}  // namespace facezip

@@ -1,0 +1,204 @@
+#include "facezip/html_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
+
+#include "facezip/report.hpp"
+#include "image/image_file.hpp"
+#include "io/base64.hpp"
+#include "io/staged_directory.hpp"
+#include "package/package_json.hpp"
+#include "report/report_page.hpp"
+
+namespace facezip {
+namespace fs = std::filesystem;
+namespace {
+using nlohmann::json;
+
+constexpr int kLargestThumbnail = 512;
+
+/// Pictures as data URIs. PNG: what JPEG adds would be taken for what the package lost.
+class Pictures {
+ public:
+  explicit Pictures(const fs::path& beside) : staged_(beside, io::StagedDirectory::Existing::kMerge) {}
+
+  std::string uri(const image::Image& picture) const {
+    const fs::path file = staged_.path() / "picture.png";
+    image::writeImage(file, picture);
+    std::ifstream stream(file, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    return "data:image/png;base64," + io::base64(bytes);
+  }
+
+ private:
+  io::StagedDirectory staged_;  // never committed
+};
+
+image::Image fromValues(int width, int height, int channels, const std::vector<float>& values) {
+  image::Image picture{{width, height, channels, SampleType::kUint8}, {}};
+  for (const float value : values) {
+    picture.samples.push_back(static_cast<std::byte>(std::lround(255.0f * std::clamp(value, 0.0f, 1.0f))));
+  }
+  return picture;
+}
+
+/// Share of the scale as gray; texels that are not covered are transparent.
+image::Image errorPicture(const ErrorPictures& pictures, const std::vector<float>& errors) {
+  std::vector<float> values;
+  const auto scale = static_cast<float>(std::max(pictures.scale, 1e-6));
+  for (const float error : errors) {
+    values.push_back(std::max(error, 0.0f) / scale);
+    values.push_back(error < 0.0f ? 0.0f : 1.0f);
+  }
+  return fromValues(pictures.width, pictures.height, 2, values);
+}
+
+float sampleOf(const image::Image& picture, std::size_t index) {
+  switch (picture.shape.type) {
+    case SampleType::kUint8:
+      return static_cast<float>(std::to_integer<int>(picture.samples[index])) / 255.0f;
+    case SampleType::kUint16:
+      return static_cast<float>(reinterpret_cast<const std::uint16_t*>(picture.samples.data())[index]) / 65535.0f;
+    case SampleType::kFloat32:
+      break;
+  }
+  return reinterpret_cast<const float*>(picture.samples.data())[index];
+}
+
+/// The image at no more than kLargestThumbnail a side: means of whole texels. Opaque: four channels become three.
+image::Image thumbnail(const fs::path& file) {
+  const image::Image picture = image::readImage(file);
+  const image::ImageShape& shape = picture.shape;
+  const int step = (std::max(shape.width, shape.height) - 1) / kLargestThumbnail + 1;
+  const int width = std::max(1, shape.width / step);
+  const int height = std::max(1, shape.height / step);
+  const int channels = shape.channels < 3 ? 1 : 3;
+  std::vector<float> values;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      for (int c = 0; c < channels; ++c) {
+        float sum = 0.0f;
+        for (int row = y * step; row < (y + 1) * step; ++row) {
+          for (int column = x * step; column < (x + 1) * step; ++column) {
+            sum += sampleOf(picture, (static_cast<std::size_t>(row) * static_cast<std::size_t>(shape.width) +
+                                      static_cast<std::size_t>(column)) *
+                                             static_cast<std::size_t>(shape.channels) +
+                                         static_cast<std::size_t>(c));
+          }
+        }
+        values.push_back(sum / static_cast<float>(step * step));
+      }
+    }
+  }
+  return fromValues(width, height, channels, values);
+}
+
+/// A colour for each mask, mixed by the masks.
+image::Image maskPicture(const Package& package) {
+  const PackageMasks& masks = *package.description().masks;
+  const image::Image tiles = image::readImage(package.directory() / masks.file);
+  std::vector<float> values(static_cast<std::size_t>(masks.tile_width * masks.tile_height * 3), 0.0f);
+  for (int k = 0; k < masks.count; ++k) {
+    const float turn = static_cast<float>(k) * 0.618034f;
+    for (std::size_t i = 0; i < values.size() / 3; ++i) {
+      const int x = static_cast<int>(i) % masks.tile_width + k % masks.columns * masks.tile_width;
+      const int y = static_cast<int>(i) / masks.tile_width + k / masks.columns * masks.tile_height;
+      const float mask = sampleOf(tiles, static_cast<std::size_t>(y * tiles.shape.width + x));
+      for (std::size_t c = 0; c < 3; ++c) {
+        values[3 * i + c] += mask * (0.5f + 0.45f * std::cos(6.28319f * (turn + static_cast<float>(c) / 3.0f)));
+      }
+    }
+  }
+  return fromValues(masks.tile_width, masks.tile_height, 3, values);
+}
+
+json picturesJson(const Package& package, const Evaluation& evaluation, const Pictures& pictures) {
+  const ErrorPictures& collected = *evaluation.pictures;
+  json images = {{"map", collected.map},
+                 {"scale", collected.scale},
+                 {"expressions", json::array()},
+                 {"textures", json::array()},
+                 {"weights", json::array()}};
+  for (std::size_t n = 0; n < collected.images.size(); ++n) {
+    const auto face = [&](std::size_t i) {
+      return pictures.uri(fromValues(collected.width, collected.height, 3, collected.images[n][i]));
+    };
+    images["expressions"].push_back({{"captured", face(0)},
+                                     {"decoded", face(1)},
+                                     {"error", pictures.uri(errorPicture(collected, collected.errors[n][0]))}});
+  }
+  const auto add = [&](const char* where, const std::string& title, const std::string& file) {
+    images[where].push_back({{"title", title}, {"src", pictures.uri(thumbnail(package.directory() / file))}});
+  };
+  for (const PackageMap& map : package.maps()) {
+    add("textures", map.name + ": neutral", map.neutral_file);
+    for (std::size_t i = 0; i < map.differences.size(); ++i) {
+      add("textures", fmt::format("{}: difference {}", map.name, i), map.differences[i].file);
+    }
+  }
+  for (const PackageWeights& set : package.weightSets()) {
+    for (const std::string& file : set.files) add("weights", file, file);
+  }
+  if (package.description().masks) images["masks"] = pictures.uri(maskPicture(package));
+  return images;
+}
+
+json searchJson(const Evaluation& evaluation) {
+  if (!evaluation.search) return nullptr;
+  json search = {{"cost", evaluation.search->cost}, {"convergence", evaluation.search->convergence}};
+  if (evaluation.search->bound) {
+    search["bound"] = *evaluation.search->bound;
+    search["gap"] = evaluation.search->cost > 0.0
+                        ? (evaluation.search->cost - *evaluation.search->bound) / evaluation.search->cost
+                        : 0.0;
+  }
+  return search;
+}
+
+json compressJson(const std::string& text) {
+  if (text.empty()) return nullptr;
+  json report = json::parse(text, nullptr, /*allow_exceptions=*/false);
+  if (report.is_object() && report.value("facezip_report", "") == "compress") return report;
+  throw InputError({"--compress-report", "", "what `facezip compress --report` wrote", "something else", ""});
+}
+
+/// JSON inside a page: no end of a script can stand in it.
+std::string forScript(const json& data) {
+  std::string text = data.dump(-1, ' ', /*ensure_ascii=*/true);
+  std::string escaped;
+  for (const char c : text) escaped += c == '<' ? std::string("\\u003c") : std::string(1, c);
+  return escaped;
+}
+
+}  // namespace
+
+void writeHtmlReport(const fs::path& file, const Package& package, const Evaluation& evaluation,
+                     const HtmlReportOptions& options) {
+  assert(evaluation.pictures.has_value());
+  const Pictures pictures(fs::temp_directory_path() / "facezip-report");
+  json data = {{"evaluation", json::parse(toJson(evaluation))},
+               {"package", json::parse(package::packageJson(package.description()))},
+               {"device", options.device},
+               {"compress", compressJson(options.compress_json)},
+               {"search", searchJson(evaluation)},
+               {"sweep", json::array()},
+               {"note", ""},
+               {"images", picturesJson(package, evaluation, pictures)}};
+  for (const MaskSweepPoint& point : evaluation.mask_sweep) {
+    data["sweep"].push_back({{"masks", point.masks}, {"rmse", point.rmse}});
+  }
+  std::string page(report::embeddedReportPage().at("report.html"));
+  constexpr std::string_view kPlace = "@DATA@";
+  page.replace(page.find(kPlace), kPlace.size(), forScript(data));
+  writeReport(file, page);
+}
+
+}  // namespace facezip

@@ -15,6 +15,7 @@ void addCompressCommand(CLI::App& app, const CommonOptions& common);
 void addReconstructCommand(CLI::App& app, const CommonOptions& common);
 void addBlendCommand(CLI::App& app, const CommonOptions& common);
 void addEvaluateCommand(CLI::App& app, const CommonOptions& common);
+void addExportCommand(CLI::App& app, const CommonOptions& common);
 void addReportCommand(CLI::App& app, const CommonOptions& common);
 void addViewCommand(CLI::App& app, const CommonOptions& common);
 void addInfoCommand(CLI::App& app, const CommonOptions& common);

@@ -66,6 +66,7 @@ int main(int argc, char** argv) {
   addReconstructCommand(app, common);
   addBlendCommand(app, common);
   addEvaluateCommand(app, common);
+  addExportCommand(app, common);
   addReportCommand(app, common);
   addViewCommand(app, common);
   addInfoCommand(app, common);

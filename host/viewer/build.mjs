@@ -4,15 +4,26 @@ import { copyFileSync, mkdirSync } from 'node:fs';
 
 const output = process.argv[2] ?? 'dist';
 mkdirSync(output, { recursive: true });
-await build({
-  entryPoints: ['src/main.js'],
-  outfile: `${output}/viewer.js`,
+const shared = {
   bundle: true,
-  minify: true,
   legalComments: 'inline',  // the licence notices of what is bundled
-  format: 'iife',           // a classic script works from file: too
   target: 'es2020',
   charset: 'ascii',
   loader: { '.h': 'text' },
+};
+await build({
+  ...shared,
+  entryPoints: ['src/main.js'],
+  outfile: `${output}/viewer.js`,
+  minify: true,
+  format: 'iife',  // a classic script works from file: too
+});
+// What `facezip export --target three` writes: the page it goes into brings three.js.
+await build({
+  ...shared,
+  entryPoints: ['src/three.js'],
+  outfile: `${output}/facezip_three.js`,
+  format: 'esm',
+  external: ['three', 'three/*'],
 });
 for (const file of ['index.html', 'viewer.css']) copyFileSync(`src/${file}`, `${output}/${file}`);

@@ -32,7 +32,7 @@ struct EvaluateOptions {
   /// Also every method at C = 1, 2, 3, 4: up to 16 compressions more, one after the other.
   bool ablation = false;
   /// Numbers of masks to compress with, by the package's method and by the paper's: two compressions each.
-  std::vector<int> mask_sweep;
+  std::vector<int> mask_sweep = {};
   int blends = 16;  ///< R, random weight vectors to blend; 0: none
   /// Collects small images of every expression and of its errors, for a picture: Evaluation::pictures.
   bool pictures = false;

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cassert>
+#include <cctype>
 #include <limits>
 #include <span>
 #include <utility>
@@ -81,8 +82,6 @@ class Accessors {
     accessor.bufferView = addView(std::as_bytes(indices), TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
     return push(std::move(accessor));
   }
-
-  std::size_t bytes() const { return model_.buffers[0].data.size(); }
 
  private:
   static tinygltf::Accessor describe(std::span<const float> values, int components, bool with_bounds) {
@@ -164,9 +163,20 @@ tinygltf::Primitive makePrimitive(const GltfScene& scene, Accessors& accessors) 
   return primitive;
 }
 
+/// A relative path as a URI (RFC 3986).
+std::string percentEncoded(const std::string& path) {
+  std::string uri;
+  for (const char c : path) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool plain = std::isalnum(byte) != 0 || std::string_view("-._~/").find(c) != std::string_view::npos;
+    uri += plain ? std::string(1, c) : fmt::format("%{:02X}", byte);
+  }
+  return uri;
+}
+
 int addTexture(tinygltf::Model& model, const std::string& uri) {
   tinygltf::Image image;
-  image.uri = uri;
+  image.uri = percentEncoded(uri);
   model.images.push_back(std::move(image));
   tinygltf::Texture texture;
   texture.source = static_cast<int>(model.images.size()) - 1;
@@ -175,23 +185,28 @@ int addTexture(tinygltf::Model& model, const std::string& uri) {
   return static_cast<int>(model.textures.size()) - 1;
 }
 
-tinygltf::Material makeMaterial(const GltfScene& scene, tinygltf::Model& model) {
-  tinygltf::Material material;
-  material.name = scene.name;
-  material.pbrMetallicRoughness.metallicFactor = 0.0;
-  material.pbrMetallicRoughness.roughnessFactor = 0.6;  // of skin, roughly
-  if (!scene.base_colour_texture.empty() || !scene.normal_texture.empty()) {
+/// Puts textures and extras into `material`, a material of `model`.
+void setMaterial(const GltfMaterial& from, tinygltf::Material& material, tinygltf::Model& model) {
+  if (!from.base_colour_texture.empty() || !from.normal_texture.empty()) {
     tinygltf::Sampler sampler;
     sampler.minFilter = TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR;
     sampler.magFilter = TINYGLTF_TEXTURE_FILTER_LINEAR;
     sampler.wrapS = sampler.wrapT = TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
     model.samplers.push_back(std::move(sampler));
   }
-  if (!scene.base_colour_texture.empty()) {
-    material.pbrMetallicRoughness.baseColorTexture.index = addTexture(model, scene.base_colour_texture);
+  if (!from.base_colour_texture.empty()) {
+    material.pbrMetallicRoughness.baseColorTexture.index = addTexture(model, from.base_colour_texture);
   }
-  if (!scene.normal_texture.empty()) material.normalTexture.index = addTexture(model, scene.normal_texture);
-  if (scene.material_extras.is_object()) material.extras = toValue(scene.material_extras);
+  if (!from.normal_texture.empty()) material.normalTexture.index = addTexture(model, from.normal_texture);
+  if (from.extras.is_object()) material.extras = toValue(from.extras);
+}
+
+tinygltf::Material makeMaterial(const GltfScene& scene, tinygltf::Model& model) {
+  tinygltf::Material material;
+  material.name = scene.name;
+  material.pbrMetallicRoughness.metallicFactor = 0.0;
+  material.pbrMetallicRoughness.roughnessFactor = 0.6;  // of skin, roughly
+  setMaterial({scene.base_colour_texture, scene.normal_texture, scene.material_extras}, material, model);
   return material;
 }
 
@@ -212,6 +227,20 @@ void requireWritten(const fs::path& file, std::size_t least_bytes) {
   std::error_code error;
   const std::uintmax_t bytes = fs::file_size(file, error);
   if (error || bytes < least_bytes) throw OutputError(file, "could not be written whole", "is the disk full?");
+}
+
+void save(const tinygltf::Model& model, const fs::path& file) {
+  const bool binary = file.extension() == ".glb";
+  tinygltf::TinyGLTF writer;
+  // Textures stay where they are: a writer that writes nothing keeps their paths.
+  writer.SetImageWriter(
+      [](const std::string*, const std::string*, const tinygltf::Image*, bool, std::string*, void*) { return false; },
+      nullptr);
+  if (!writer.WriteGltfSceneToFile(&model, file.string(), false, false, /*prettyPrint=*/true, binary)) {
+    throw OutputError(file, "could not be written", "");
+  }
+  requireWritten(binary ? file : fs::path(file).replace_extension(".bin"), model.buffers.at(0).data.size());
+  requireWritten(file, 1);
 }
 
 }  // namespace
@@ -277,17 +306,17 @@ void writeGltf(const fs::path& file, const GltfScene& scene) {
   model.scenes.push_back(std::move(nodes));
   model.defaultScene = 0;
 
-  const bool binary = file.extension() == ".glb";
-  tinygltf::TinyGLTF writer;
-  // Textures stay where they are: a writer that writes nothing keeps their paths.
-  writer.SetImageWriter(
-      [](const std::string*, const std::string*, const tinygltf::Image*, bool, std::string*, void*) { return false; },
-      nullptr);
-  if (!writer.WriteGltfSceneToFile(&model, file.string(), false, false, /*prettyPrint=*/true, binary)) {
-    throw OutputError(file, "could not be written", "");
+  save(model, file);
+}
+
+void addBlendToGltf(const fs::path& from, const fs::path& to, const GltfMaterial& material) {
+  tinygltf::Model model;
+  std::string error, warning;
+  if (!tinygltf::TinyGLTF().LoadBinaryFromFile(&model, &error, &warning, from.string()) || model.materials.empty()) {
+    throw InputError({from.string(), "", "glTF that facezip wrote", error, "write the package again"});
   }
-  requireWritten(binary ? file : fs::path(file).replace_extension(".bin"), accessors.bytes());
-  requireWritten(file, 1);
+  setMaterial(material, model.materials[0], model);
+  save(model, to);
 }
 
 }  // namespace facezip::exporting

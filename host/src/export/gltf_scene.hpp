@@ -47,4 +47,15 @@ Eigen::MatrixX3d vertexNormals(const Eigen::MatrixX3d& positions, const Eigen::M
 /// Throws OutputError; InputError naming a target with another number of vertices.
 void writeGltf(const std::filesystem::path& file, const GltfScene& scene);
 
+/// Material of a glTF file.
+struct GltfMaterial {
+  std::string base_colour_texture;  ///< path relative to the file, "" for none
+  std::string normal_texture;       ///< likewise
+  nlohmann::json extras;            ///< an object, or null for none
+};
+
+/// Writes the glTF file `from` (binary, as writeGltf() writes it) to `to` with this material. Throws InputError for a
+/// file that cannot be read, OutputError.
+void addBlendToGltf(const std::filesystem::path& from, const std::filesystem::path& to, const GltfMaterial& material);
+
 }  // namespace facezip::exporting

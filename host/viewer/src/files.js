@@ -2,6 +2,10 @@
 // scripts that hold them as text, since browsers let no page fetch from file:.
 
 const waiting = new Map();
+let base = '';
+
+/** Where the folder `package` lies, ending in a slash. */
+export function setBase(folder) { base = folder; }
 
 // Called by the scripts: package/NAME.js holds facezipFile("NAME", "base64").
 globalThis.facezipFile = (name, base64) => {
@@ -30,6 +34,6 @@ async function readUrl(name, url) {
 
 /** Bytes of a file of the package. */
 export function readFile(name) {
-  const url = `package/${name.split('/').map(encodeURIComponent).join('/')}`;
+  const url = `${base}package/${name.split('/').map(encodeURIComponent).join('/')}`;
   return globalThis.facezipScripts ? readScript(name, url) : readUrl(name, url);
 }

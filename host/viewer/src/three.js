@@ -1,0 +1,47 @@
+// For pages with three.js of their own: a face whose mesh and textures follow one set of weights.
+//   import { loadFace } from './facezip_three.js';
+//   const face = await loadFace(renderer, './');   // the folder that holds `package`
+//   scene.add(face.object);
+//   face.setWeights({ smile: 0.7 });               // whenever they change; blends on the GPU
+import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
+import { PackageTextures } from './blend.js';
+import { readFile, setBase } from './files.js';
+import { cellGains, fromPreset } from './gains.js';
+import { shadedMaterial } from './materials.js';
+import { readDescription, readMasks } from './package.js';
+
+export async function loadFace(renderer, base = './') {
+  setBase(base);
+  if (!renderer.extensions.has('EXT_color_buffer_float')) throw new Error('facezip needs EXT_color_buffer_float');
+  const description = await readDescription();
+  const textures = await PackageTextures.load(description, renderer, () => {});
+  const gltf = await new GLTFLoader().parseAsync((await readFile(description.mesh.file)).buffer, '');
+  let object;
+  gltf.scene.traverse((node) => { if (node.isMesh) object = node; });
+  object.material = shadedMaterial(textures, { detail: { value: true } });
+  let gains = new Float32Array(description.expressions.length).fill(1);
+  let weights = new Float32Array(description.expressions.length);
+  const blend = () => textures.blend(renderer, weights.map((weight, n) => weight * gains[n]));
+  blend();
+  return {
+    object,
+    textures,
+    expressions: description.expressions,
+    /** Weights by name; others are 0. */
+    setWeights(byName) {
+      weights = Float32Array.from(description.expressions, (name) => byName[name] ?? 0);
+      for (const [name, index] of Object.entries(object.morphTargetDictionary ?? {})) {
+        object.morphTargetInfluences[index] = byName[name] ?? 0;
+      }
+      blend();
+    },
+    /** The text of a preset of gains that `facezip view` saved. */
+    async setGains(text) {
+      const preset = fromPreset(description, text);
+      const masks = await readMasks(description);
+      gains = preset.expressions;
+      textures.sets.forEach((set, s) => set.setGains(cellGains(description, masks, preset.regions, description.weights[s])));
+      blend();
+    },
+  };
+}

@@ -2,8 +2,9 @@
 // PACKAGES holds what make_packages.cmake made: head, bare (no mesh, no normals) and many (100 expressions).
 // Screenshots stay in WORK_DIRECTORY.
 import assert from 'node:assert/strict';
-import { execFileSync, spawn } from 'node:child_process';
-import { mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { execFileSync, spawn, spawnSync } from 'node:child_process';
+import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { createServer } from 'node:net';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { decode } from 'fast-png';
@@ -242,6 +243,31 @@ await run('100 expressions', async () => {
   await crowd.close();
   many.stop();
 });
+await run('bad input gets one clear error', async () => {
+  const fails = (code, wanted, ...args) => {
+    const { status, stderr } = spawnSync(facezip, args, { encoding: 'utf8' });
+    assert.equal(status, code, `${args.join(' ')}: ${stderr}`);
+    assert.match(stderr, wanted);
+    assert.equal(stderr.trim().split('\n').length, 1, stderr);
+  };
+  const busy = createServer();
+  await new Promise((done) => busy.listen(0, '127.0.0.1', done));
+  fails(5, /127\.0\.0\.1:\d+: the port is in use/, 'view', packagePath, '--port', String(busy.address().port));
+  busy.close();
+  fails(3, /no such file/, 'view', join(work, 'nowhere'));
+  const exported = join(work, 'exported');
+  fails(3, /mesh: expected a package with meshes/, 'export', join(packages, 'bare'), '--target', 'gltf', '--output', exported);
+  assert.ok(!existsSync(exported));
+  mkdirSync(exported);
+  writeFileSync(join(exported, 'thesis.txt'), 'not to be lost');
+  fails(5, /exported/, 'export', packagePath, '--target', 'gltf', '--output', exported);
+  fails(5, /exported/, 'view', packagePath, '--output', exported);
+  assert.ok(existsSync(join(exported, 'thesis.txt')));
+  fails(3, /another face/, 'blend', packagePath, '--weights', `${names[0]}=1`, '--gain', join(work, 'other.json'),
+    '--output', join(work, 'x.png'));
+  fails(3, /ends in \.html/, 'report', join(packages, 'capture'), packagePath, '--output', join(work, 'report.pdf'));
+});
+
 await run('the report shows plots, pictures and sliders without a network', async () => {
   const report = await open(browser, pathToFileURL(join(packages, 'report.html')).href, false);
   assert.ok(await report.locator('svg.plot path').count() > 8);

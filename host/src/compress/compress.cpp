@@ -164,6 +164,7 @@ class Compression {
     if (rates_) chooseRate();
     progress_.stage("weight grid", 0);
     grid_ = raster::makeWeightGrid(*texel_masks_, *maps_.maps[maps_.reference].raster, options_.weight_scale);
+    guides_ = makeMaskGuides(face_, masks_, grid_);  // while the grid has its masks
     clock_.book("weight grid");
     if (expressions() <= options_.differences) {
       progress_.note(fmt::format("{} expression{}: each gets a difference texture of its own", expressions(),
@@ -477,7 +478,7 @@ class Compression {
     solution.differences = options_.differences;
     solution.method_json = methodJson(options_, report_, face_.region_description);
     solution.has_mesh = options_.mesh;
-    solution.guides = makeMaskGuides(face_, masks_, grid_);
+    solution.guides = guides_;
     std::vector<std::unique_ptr<TextureSource>> sources;
     struct Fitted {
       FittedTextures* source;
@@ -563,6 +564,7 @@ class Compression {
   std::unique_ptr<raster::TexelMasks> texel_masks_;
   MapSet maps_;
   raster::WeightGrid grid_;
+  MaskGuides guides_;
   std::optional<Importance> importance_;
   std::unique_ptr<RateSearch> rates_;  ///< where a target or budget was given
   std::vector<WeightGroup> groups_;

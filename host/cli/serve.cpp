@@ -53,8 +53,8 @@ int bindLoopback(httplib::Server& server, int port) {
   const bool any = port == 0;
   const int bound = any ? server.bind_to_any_port(kLoopback) : server.bind_to_port(kLoopback, port) ? port : -1;
   if (bound > 0) return bound;
-  throw OutputError(fmt::format("127.0.0.1:{}", port), "the port is in use, or not for this user",
-                    "choose another with --port, or 0 for any that is free");
+  throw InputError({"--port", "", "a port that is free on 127.0.0.1, and for this user", fmt::format("{}", port),
+                    "choose another, or 0 for any"});
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace facezip::cli {
 /// `progress` is cancelled; then it returns.
 /// port     0: any that is free
 /// started  called with the port, once connections are accepted
-/// Throws OutputError when the port cannot be had.
+/// Throws InputError when the port cannot be had.
 void serveViewer(const Package& package, int port, const std::function<void(int port)>& started, Progress& progress);
 
 }  // namespace facezip::cli

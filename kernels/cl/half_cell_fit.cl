@@ -2,7 +2,9 @@
 // With w the weights at the centre of a half cell and G its Gram matrix (half_cell_gram.cl), the textures
 // D(p) = (w w^T + ridge)^-1 w Delta(p) of its texels (difference_fit.cl) enter the equations of the weights
 // (weight_system.cl) as two sums over the texels only:
-//   S = sum_p t D Delta^T = A^-1 w G,   B = sum_p t D D^T = A^-1 w G w^T A^-1,   A = w w^T + ridge
+//   S = sum_p t D Delta^T = Q G,   B = sum_p t D D^T = Q G Q^T,   Q = A^-1 w,   A = w w^T + ridge
+// In this order rounding leaves B positive where weights hardly use a texture: A^-1 (w G w^T) A^-1 would magnify it by the
+// square of 1 / ridge.
 // NDRange  global {groups, half rows}, local {1, 1}: one work-item per 16 half cells side by side, one in each lane
 // Buffers  grams    in   as half_cell_gram.cl writes it
 //          weights  in   [row][column][C][lanes] float   W_n of the cell rows from first_cell_row on, n innermost
@@ -84,39 +86,20 @@ static void solve(const float16 l[PAIRS], float16 x[TEXTURES]) {
   }
 }
 
-// w G of expression m.
-static void multiply(global const float16* restrict grams, const float16* w, const int m, float16 product[TEXTURES]) {
+// q G of expression m.
+static void multiply(global const float16* restrict grams, const float16 q[EXPRESSIONS][TEXTURES], const int m,
+                     float16 product[TEXTURES]) {
 #pragma unroll
   for (int i = 0; i < TEXTURES; ++i) product[i] = 0.0f;
   for (int n = 0; n < m; ++n) {
     const float16 g = GRAM(n, m);
 #pragma unroll
-    for (int i = 0; i < TEXTURES; ++i) product[i] = FMA(w[i * EXPRESSION_LANES + n], g, product[i]);
+    for (int i = 0; i < TEXTURES; ++i) product[i] = FMA(q[n][i], g, product[i]);
   }
   for (int n = m; n < EXPRESSIONS; ++n) {
     const float16 g = GRAM(m, n);
 #pragma unroll
-    for (int i = 0; i < TEXTURES; ++i) product[i] = FMA(w[i * EXPRESSION_LANES + n], g, product[i]);
-  }
-}
-
-// B = A^-1 (w G w^T) A^-1, from the product in the middle.
-static void surround(const float16 l[PAIRS], const float16 middle[PAIRS], float16 b[PAIRS]) {
-  float16 x[TEXTURES][TEXTURES];  // rows are the columns of A^-1 middle
-#pragma unroll
-  for (int j = 0; j < TEXTURES; ++j) {
-#pragma unroll
-    for (int i = 0; i < TEXTURES; ++i) x[j][i] = middle[i > j ? PAIR(i, j) : PAIR(j, i)];
-    solve(l, x[j]);
-  }
-#pragma unroll
-  for (int i = 0; i < TEXTURES; ++i) {
-    float16 row[TEXTURES];
-#pragma unroll
-    for (int j = 0; j < TEXTURES; ++j) row[j] = x[j][i];
-    solve(l, row);
-#pragma unroll
-    for (int j = 0; j <= i; ++j) b[PAIR(i, j)] = row[j];
+    for (int i = 0; i < TEXTURES; ++i) product[i] = FMA(q[n][i], g, product[i]);
   }
 }
 
@@ -148,9 +131,8 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void half_cell_fit(
 
   float16 a[PAIRS];
   float16 l[PAIRS];
-  float16 middle[PAIRS];
 #pragma unroll
-  for (int p = 0; p < PAIRS; ++p) a[p] = middle[p] = 0.0f;
+  for (int p = 0; p < PAIRS; ++p) a[p] = 0.0f;
   for (int n = 0; n < EXPRESSIONS; ++n) {
 #pragma unroll
     for (int i = 0; i < TEXTURES; ++i) {
@@ -164,26 +146,28 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void half_cell_fit(
   for (int p = 0; p < PAIRS; ++p) l[p] = a[p];
   factor(l, ridge);
 
+  float16 q[EXPRESSIONS][TEXTURES];
+  for (int n = 0; n < EXPRESSIONS; ++n) {
+#pragma unroll
+    for (int i = 0; i < TEXTURES; ++i) q[n][i] = w[i * EXPRESSION_LANES + n];
+    solve(l, q[n]);
+  }
+
   // Entry e of lane k is results[e][k].
   float16 results[HALF_ENTRIES];
   for (int e = 0; e < HALF_ENTRIES; ++e) results[e] = 0.0f;
   float16 error = trace;
   for (int m = 0; m < EXPRESSIONS; ++m) {
     float16 x[TEXTURES];
-    multiply(grams, w, m, x);
+    multiply(grams, q, m, x);
 #pragma unroll
     for (int i = 0; i < TEXTURES; ++i) {
 #pragma unroll
-      for (int j = 0; j <= i; ++j) middle[PAIR(i, j)] = FMA(x[i], w[j * EXPRESSION_LANES + m], middle[PAIR(i, j)]);
-    }
-    solve(l, x);
-#pragma unroll
-    for (int i = 0; i < TEXTURES; ++i) {
+      for (int j = 0; j <= i; ++j) results[PAIR(i, j)] = FMA(x[i], q[m][j], results[PAIR(i, j)]);
       results[SIDES_BEGIN + i * EXPRESSION_LANES + m] = x[i];
       error -= 2.0f * x[i] * w[i * EXPRESSION_LANES + m];
     }
   }
-  surround(l, middle, results);
 #pragma unroll
   for (int i = 0; i < TEXTURES; ++i) {
 #pragma unroll

@@ -154,7 +154,7 @@ int compiledBy(const ProgramCache& cache) {
   DeviceContext& shared = test::testDevice();
   DeviceContext context(shared.device(), shared.info(), &progress, cache);
   const cl::Kernel kernel = context.kernel("weight_blend.cl", "weight_blend", "-D LANES=1 -D DIFFERENCES=2");
-  EXPECT_EQ(kernel.getInfo<CL_KERNEL_NUM_ARGS>(), 9u);
+  EXPECT_EQ(kernel.getInfo<CL_KERNEL_NUM_ARGS>(), 10u);
   return progress.count;
 }
 

@@ -21,6 +21,7 @@ void addEvaluateCommand(CLI::App& app, const CommonOptions& common) {
     std::string package;
     std::vector<std::string> baselines = {"pca4", "pca8", "no-permutation", "paper", "limit"};
     bool ablation = false;
+    bool shapes = false;
     int blends = EvaluateOptions().blends;
     std::string picture;
     std::string picture_map;
@@ -41,6 +42,8 @@ void addEvaluateCommand(CLI::App& app, const CommonOptions& common) {
       ->check(CLI::IsMember(
           {"pca4", "pca8", "limit", "no-permutation", "paper", "closed-loop", "refined", "weights-per-map", "none"}))
       ->capture_default_str();
+  command->add_flag("--shapes", arguments->shapes,
+                    "The capture's expressions are single shapes of the package's rig, by name");
   command->add_flag("--ablation", arguments->ablation,
                     "Also every method at C = 1, 2, 3, 4: compresses up to 16 times more");
   command->add_option("--blends", arguments->blends, "Random blends of one to five expressions to measure; 0: none")
@@ -74,6 +77,7 @@ void addEvaluateCommand(CLI::App& app, const CommonOptions& common) {
     options.weights_per_map = wanted("weights-per-map");
     options.limit = wanted("limit");
     options.ablation = arguments->ablation;
+    options.shapes = arguments->shapes;
     options.blends = arguments->blends;
     options.pictures = !arguments->picture.empty();
     options.picture_map = arguments->picture_map;

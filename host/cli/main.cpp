@@ -69,6 +69,8 @@ int main(int argc, char** argv) {
   addExportCommand(app, common);
   addReportCommand(app, common);
   addViewCommand(app, common);
+  addRigCommand(app, common);
+  addSolveWeightsCommand(app, common);
   addInfoCommand(app, common);
   addDevicesCommand(app, common);
   addDemoCommand(app, common);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
 #include "method_titles.hpp"
@@ -182,6 +183,59 @@ void printEvaluation(const Evaluation& evaluation) {
   printBytes(evaluation);
   fmt::print("\n");
   printSeconds(evaluation.seconds);
+}
+
+void printRigReport(const RigReport& report) {
+  fmt::print("{} shapes on {} vertices ({} of the skin), from {} expressions; transferred by {}\n",
+             report.shapes.size(), report.vertices, report.skin_vertices, report.expressions.size(), report.transfer);
+  fmt::print("\n{:<34}{:>22}{:>32}\n", "distance to the captured mesh, mm", "rig", "template alone");
+  fmt::print("{:<34}{:>10}{:>10}{:>10}{:>12}{:>10}{:>10}\n", "expression", "mean", "99th pct", "largest", "mean",
+             "99th pct", "largest");
+  RigResidual mean, template_mean;
+  const double share = 1.0 / static_cast<double>(report.expressions.size());
+  const auto add = [share](RigResidual& sum, const RigResidual& each) {
+    sum.mean += share * each.mean;
+    sum.percentile_99 += share * each.percentile_99;
+    sum.largest += share * each.largest;
+  };
+  const auto row = [](const std::string& name, const RigResidual& rig, const RigResidual& by_template) {
+    fmt::print("{:<34}{:>10.3f}{:>10.3f}{:>10.3f}{:>12.3f}{:>10.3f}{:>10.3f}\n", name, rig.mean, rig.percentile_99,
+               rig.largest, by_template.mean, by_template.percentile_99, by_template.largest);
+  };
+  for (std::size_t n = 0; n < report.expressions.size(); ++n) {
+    row(report.expressions[n], report.residuals[n], report.template_residuals[n]);
+    add(mean, report.residuals[n]);
+    add(template_mean, report.template_residuals[n]);
+  }
+  row("mean", mean, template_mean);
+  fmt::print("rms over all, mm, after each iteration:");
+  for (const double rms : report.convergence) fmt::print(" {:.3f}", rms);
+  fmt::print("\n\ntextures of shapes: {}", report.texture_solve);
+  if (report.texture_damping > 0.0) fmt::print(", lambda {:g}", report.texture_damping);
+  if (report.left_out_nothing > 0.0) {
+    fmt::print(", strain {:g}; expressions predicted from the others: RMSE {:.3f} (0..255) of {:.3f}",
+               report.strain_share, report.left_out_rmse, report.left_out_nothing);
+  }
+  fmt::print("\n");
+  for (const auto& [map, rmse] : report.compress.rmse)
+    fmt::print("{}: RMSE {:.3f} as compressed (0..255)\n", map, rmse);
+  fmt::print("\n");
+  printSeconds(report.seconds);
+}
+
+void printSolvedClip(const SolvedClip& clip) {
+  RigResidual worst;
+  double mean = 0.0;
+  for (const RigResidual& residual : clip.residuals) {
+    mean += residual.mean / static_cast<double>(clip.residuals.size());
+    if (residual.mean > worst.mean) worst = residual;
+  }
+  fmt::print(
+      "{} frames, {} shapes; distance to the meshes: mean {:.3f} mm; worst frame: mean {:.3f}, 99th pct {:.3f}, "
+      "largest {:.3f} mm\n",
+      clip.weights.size(), clip.shapes.size(), mean, worst.mean, worst.percentile_99, worst.largest);
+  fmt::print("{:.2f} s, {:.1f} frames a second, reading included\n", clip.seconds,
+             static_cast<double>(clip.weights.size()) / std::max(clip.seconds, 1e-9));
 }
 
 }  // namespace facezip::cli

@@ -33,6 +33,8 @@ struct EvaluateOptions {
   bool ablation = false;
   /// Numbers of masks to compress with, by the package's method and by the paper's: two compressions each.
   std::vector<int> mask_sweep = {};
+  /// Of a rig's package: the capture's expressions are single shapes of the rig, by name, not what it was fitted to.
+  bool shapes = false;
   int blends = 16;  ///< R, random weight vectors to blend; 0: none
   /// Collects small images of every expression and of its errors, for a picture: Evaluation::pictures.
   bool pictures = false;
@@ -103,7 +105,8 @@ struct MaskSweepPoint {
 
 /// Methods are named "package" (as decoded from disk), "no_permutation", "paper", "closed_loop", "refined" (packages of
 /// these methods; the package's own method is an entry too, equal to "package"), "weights_per_map" (equal to "package"
-/// where its maps do not share weights), "pca4", "pca8" and "limit".
+/// where its maps do not share weights), "pca4", "pca8" and "limit"; of a rig's package also "rig": each expression as
+/// the rig's shapes blend it with the weights that it was found to have.
 struct Evaluation {
   struct Map {
     std::string name;

@@ -6,12 +6,15 @@
 
 #include "facezip/compress.hpp"
 #include "facezip/evaluate.hpp"
+#include "facezip/rig.hpp"
 
 namespace facezip {
 
 /// JSON text of a report, ending in a line end.
 std::string toJson(const CompressReport& report);
 std::string toJson(const Evaluation& evaluation);
+std::string toJson(const RigReport& report);
+std::string toJson(const SolvedClip& clip);
 
 /// Writes a report so that a reader sees all of it or none; makes the directories above it. Throws OutputError.
 void writeReport(const std::filesystem::path& file, const std::string& json_text);

@@ -68,7 +68,7 @@ class Evaluator {
             Progress& progress)
       : package_(package),
         options_(options),
-        subject_(makeSubject(capture, package, options.memory_bytes, device, progress)),
+        subject_(makeSubject(capture, package, options.memory_bytes, options.shapes, device, progress)),
         own_names_({methodKey(subject_.recorded.method)}),
         picture_map_(options.picture_map.empty() ? 0 : package.mapIndex(options.picture_map)),
         buffers_(device.context()) {}
@@ -76,7 +76,7 @@ class Evaluator {
   Evaluation run() {
     evaluation_.method = own_names_.front();
     evaluation_.differences = package_.differences();
-    evaluation_.expressions = package_.expressions();
+    evaluation_.expressions = subject_.capture.expressions;
     evaluation_.blend_weights = randomWeightVectors(subject_.recorded.seed, options_.blends, subject_.expressions());
     makeCandidates();
     evaluateMaps();
@@ -100,6 +100,11 @@ class Evaluator {
 
   void makeCandidates() {
     candidates_.push_back({"package", nullptr, std::make_unique<PackageDecoder>(package_, subject_.device)});
+    candidates_.back().decoder->setExpressions(subject_.as_packed);
+    if (!subject_.as_rigged.empty()) {
+      candidates_.push_back({"rig", nullptr, std::make_unique<PackageDecoder>(package_, subject_.device)});
+      candidates_.back().decoder->setExpressions(subject_.as_rigged);
+    }
     if (options_.no_permutation) addCandidate(Method::kNoPermutation);
     if (options_.paper) addCandidate(Method::kPaper);
     if (options_.closed_loop) addCandidate(Method::kClosedLoop);

@@ -22,7 +22,23 @@ void PackageDecoder::openMap(int map_index) {
 
 void PackageDecoder::loadRows(int begin, int end) { blender_->loadRows(begin, end); }
 
-void PackageDecoder::decode(std::span<const float> beta, std::span<float> out) { blender_->blendValues(beta, out); }
+void PackageDecoder::setExpressions(std::vector<std::vector<float>> weights) {
+  expressions_ = std::move(weights);
+  beta_.assign(expressions_.empty() ? package_.expressions().size() : expressions_.size(), 0.0f);
+}
+
+void PackageDecoder::decode(std::span<const float> beta, std::span<float> out) {
+  if (expressions_.empty()) {
+    blender_->blendValues(beta, out);
+    return;
+  }
+  std::vector<float> of_package(package_.expressions().size(), 0.0f);
+  for (std::size_t e = 0; e < expressions_.size(); ++e) {
+    if (beta[e] == 0.0f) continue;
+    for (std::size_t n = 0; n < of_package.size(); ++n) of_package[n] += beta[e] * expressions_[e][n];
+  }
+  blender_->blendValues(of_package, out);
+}
 
 void PackageDecoder::decodeExpression(int expression, std::span<float> out) {
   beta_[static_cast<std::size_t>(expression)] = 1.0f;

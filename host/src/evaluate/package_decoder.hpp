@@ -31,12 +31,17 @@ class PackageDecoder {
   /// Decodes one expression: beta of it 1, of all others 0.
   void decodeExpression(int expression, std::span<float> out);
 
+  /// From now on expression e of decode() and decodeExpression() stands for these weights of the package's expressions.
+  /// weights  of each, as many values as the package has expressions; empty: the package's own
+  void setExpressions(std::vector<std::vector<float>> weights);
+
  private:
   const Package& package_;
   const Device& device_;
   blend::WeightSets weights_;
   std::unique_ptr<blend::BandBlender> blender_;
   std::vector<float> beta_;
+  std::vector<std::vector<float>> expressions_;  ///< empty: those of the package
 };
 
 }  // namespace facezip::evaluate

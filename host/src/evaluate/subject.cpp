@@ -3,19 +3,78 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "compress/band_plan.hpp"
 #include "compress/map_bands.hpp"
 #include "compress/method_record.hpp"
+#include "facezip/rig.hpp"
 
 namespace facezip::evaluate {
 namespace {
 
 std::string packageFile(const Package& package) { return (package.directory() / "package.json").string(); }
 
+/// What each expression of a capture is in a rig's package.
+struct RiggedExpressions {
+  std::vector<std::size_t> kept;              ///< expressions of the capture that the package has
+  std::vector<std::vector<float>> as_packed;  ///< of these
+  std::vector<std::vector<float>> as_rigged;
+};
+
+RiggedExpressions riggedExpressions(const Capture& capture, const Package& package, bool shapes) {
+  const Rig rig = openRig(package.directory());
+  const auto indexIn = [](const std::vector<std::string>& names, const std::string& name) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    return found == names.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - names.begin()));
+  };
+  const auto inPackage = [&](const std::string& name) {
+    const std::optional<std::size_t> index = indexIn(package.expressions(), name);
+    if (!index) {
+      throw InputError({packageFile(package), "expressions", "the names of rig.json", "no " + name, "make it again"});
+    }
+    return *index;
+  };
+  RiggedExpressions found;
+  for (std::size_t e = 0; e < capture.expressions.size(); ++e) {
+    const std::optional<std::size_t> n = indexIn(shapes ? rig.shapes : rig.expressions, capture.expressions[e]);
+    if (!n) continue;
+    found.kept.push_back(e);
+    std::vector<float>& packed = found.as_packed.emplace_back(package.expressions().size(), 0.0f);
+    packed[inPackage(shapes ? rig.shapes[*n] : rig.package_expressions[*n])] = 1.0f;
+    if (shapes) continue;
+    std::vector<float>& rigged = found.as_rigged.emplace_back(package.expressions().size(), 0.0f);
+    for (std::size_t m = 0; m < rig.shapes.size(); ++m) {
+      rigged[inPackage(rig.shapes[m])] = static_cast<float>(rig.weights[*n][m]);
+    }
+  }
+  if (found.kept.empty()) {
+    throw InputError({packageFile(package), shapes ? "shapes" : "expressions",
+                      fmt::format("some of the expressions of {}", capture.directory.string()), "none of these names",
+                      shapes ? "" : "--shapes evaluates single shapes of a rig"});
+  }
+  return found;
+}
+
+/// The capture with these expressions alone.
+Capture withExpressions(const Capture& capture, const std::vector<std::size_t>& kept) {
+  Capture part = capture;
+  part.expressions.clear();
+  part.expression_meshes.clear();
+  for (CaptureMap& map : part.maps) map.expressions.clear();
+  for (const std::size_t e : kept) {
+    part.expressions.push_back(capture.expressions[e]);
+    part.expression_meshes.push_back(capture.expression_meshes[e]);
+    for (std::size_t m = 0; m < part.maps.size(); ++m) {
+      part.maps[m].expressions.push_back(capture.maps[m].expressions[e]);
+    }
+  }
+  return part;
+}
+
 /// The capture's maps that the package has, in the package's order; refuses a package of another capture.
-Capture matchingCapture(const Capture& capture, const Package& package) {
-  if (capture.expressions != package.expressions()) {
+Capture matchingCapture(const Capture& capture, const Package& package, bool rigged) {
+  if (!rigged && capture.expressions != package.expressions()) {
     throw InputError(
         {packageFile(package), "expressions",
          fmt::format("the {} expressions of {}, in its order", capture.expressions.size(), capture.directory.string()),
@@ -37,13 +96,21 @@ Capture matchingCapture(const Capture& capture, const Package& package) {
 
 }  // namespace
 
-Subject makeSubject(const Capture& capture, const Package& package, std::uint64_t memory_bytes, const Device& device,
-                    Progress& progress) {
-  Subject subject{matchingCapture(capture, package),
+Subject makeSubject(const Capture& capture, const Package& package, std::uint64_t memory_bytes, bool shapes,
+                    const Device& device, Progress& progress) {
+  const bool rigged = isRig(package.directory());
+  if (shapes && !rigged) {
+    throw InputError({package.directory().string(), "--shapes", "a package that `facezip rig` made", "another", ""});
+  }
+  RiggedExpressions expressions;
+  if (rigged) expressions = riggedExpressions(capture, package, shapes);
+  Subject subject{matchingCapture(rigged ? withExpressions(capture, expressions.kept) : capture, package, rigged),
                   compress::optionsFromMethodJson(package.methodJson(), packageFile(package)),
                   device,
                   progress,
-                  {}};
+                  {},
+                  std::move(expressions.as_packed),
+                  std::move(expressions.as_rigged)};
   subject.recorded.memory_bytes = memory_bytes;
   subject.recorded.mesh = false;  // baselines are for their errors alone
   subject.face = compress::readFace(subject.capture, subject.recorded.region);

@@ -21,14 +21,18 @@ struct Subject {
   const Device& device;
   Progress& progress;
   compress::Face face;
+  /// Weights of the package's expressions that each of the capture's stands for; empty where they are the same.
+  std::vector<std::vector<float>> as_packed;
+  std::vector<std::vector<float>> as_rigged;  ///< the same by the shapes of a rig alone; empty without a rig
 
   int expressions() const { return static_cast<int>(capture.expressions.size()); }
 };
 
 /// The capture's maps that the package has, and how the package was made.
+/// shapes  of a rig's package: the capture's expressions are single shapes of the rig
 /// Throws InputError for a package of another capture.
-Subject makeSubject(const Capture& capture, const Package& package, std::uint64_t memory_bytes, const Device& device,
-                    Progress& progress);
+Subject makeSubject(const Capture& capture, const Package& package, std::uint64_t memory_bytes, bool shapes,
+                    const Device& device, Progress& progress);
 
 /// Throws InputError if the map of the package has not the size, channels and type of the captured one.
 void requireSameShape(const compress::OpenMap& map, const PackageMap& packed, const Package& package);

@@ -68,6 +68,9 @@ class Accessors {
     accessor.sparse.indices.byteOffset = 0;  // tinygltf leaves both uninitialised
     accessor.sparse.values.byteOffset = 0;
     accessor.sparse.count = static_cast<int>(indices.size());
+    // tinygltf leaves these as they were in memory, and writes them.
+    accessor.sparse.indices.byteOffset = 0;
+    accessor.sparse.values.byteOffset = 0;
     accessor.sparse.indices.componentType = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
     accessor.sparse.indices.bufferView = addView(std::as_bytes(std::span(indices)), 0);
     accessor.sparse.values.bufferView = addView(std::as_bytes(std::span(kept)), 0);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/staged_directory.hpp"
+#include "rig/rig_json.hpp"
 
 namespace facezip {
 namespace {
@@ -154,6 +155,31 @@ std::string toJson(const Evaluation& evaluation) {
   for (const Evaluation::Map& map : evaluation.maps) object["maps"][map.name] = mapJson(map, evaluation);
   for (const std::vector<float>& weights : evaluation.blend_weights) {
     object["blend_weights"].push_back(weightsJson(weights, evaluation.expressions));
+  }
+  return object.dump(2) + "\n";
+}
+
+std::string toJson(const RigReport& report) {
+  json object = json::parse(rig::rigJson(report, 1.0));
+  for (const char* of_the_file : {"format", "generator", "millimetres_per_unit"}) object.erase(of_the_file);
+  object["facezip_report"] = "rig";
+  object["version"] = kReportVersion;
+  object["vertices"] = report.vertices;
+  object["parts"] = report.parts;
+  object["compress"] = json::parse(toJson(report.compress));
+  object["seconds"] = secondsJson(report.seconds);
+  return object.dump(2) + "\n";
+}
+
+std::string toJson(const SolvedClip& clip) {
+  json object = {{"facezip_report", "solve-weights"},
+                 {"version", kReportVersion},
+                 {"shapes", clip.shapes},
+                 {"residual_mm", json::array()},
+                 {"seconds", {{"total", clip.seconds}}}};
+  for (const RigResidual& residual : clip.residuals) {
+    object["residual_mm"].push_back(
+        {{"mean", residual.mean}, {"p99", residual.percentile_99}, {"max", residual.largest}});
   }
   return object.dump(2) + "\n";
 }

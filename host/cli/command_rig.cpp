@@ -1,0 +1,96 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "commands.hpp"
+#include "facezip/report.hpp"
+#include "facezip/rig.hpp"
+#include "shared_options.hpp"
+#include "tables.hpp"
+#include "terminal.hpp"
+
+namespace facezip::cli {
+
+void addRigCommand(CLI::App& app, const CommonOptions& common) {
+  struct Arguments {
+    std::string capture;
+    std::string rig_template;
+    std::string guess;
+    std::string output;
+    std::vector<std::string> maps;
+    int iterations = geometry::ExampleRigOptions{}.iterations;
+    std::string transfer = "best";
+    std::string texture_solve = "local";
+    double texture_damping = 0.0;
+    std::string device = "auto";
+    std::string report;
+    CompressArguments compress;
+  };
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand(
+      "rig", "Makes an animatable face of a capture: a template's shapes fitted to it, with their textures");
+  command->add_option("capture", arguments->capture, "Directory of the capture (docs/capture_format.md)")
+      ->required()
+      ->type_name("CAPTURE");
+  command
+      ->add_option("--template", arguments->rig_template,
+                   "Directory of neutral.obj and an OBJ file for each shape, of the capture's topology")
+      ->required()
+      ->type_name("DIR");
+  command
+      ->add_option("-o,--output", arguments->output, "Directory of the package; an earlier package there is replaced")
+      ->required()
+      ->type_name("PACKAGE");
+  command
+      ->add_option("--weights", arguments->guess,
+                   "Weights of the shapes that the expressions are thought to have (.csv or .json, docs/rig.md)")
+      ->type_name("GUESS");
+  command->add_option("--iterations", arguments->iterations, "Turns of fitting shapes and weights")
+      ->capture_default_str();
+  command
+      ->add_option("--transfer", arguments->transfer,
+                   "How the template comes onto the subject: gradients (deformation transfer), displacements, or best: "
+                   "what poses the expressions better")
+      ->check(CLI::IsMember({"best", "gradients", "displacements"}))
+      ->capture_default_str();
+  command
+      ->add_option("--texture-solve", arguments->texture_solve,
+                   "Textures of the shapes: local (a wrinkle belongs to shapes that strain the skin there), damped, or "
+                   "pseudo-inverse (the FaceZip paper's)")
+      ->check(CLI::IsMember({"local", "damped", "pseudo-inverse"}))
+      ->capture_default_str();
+  CLI::Option* damping =
+      command
+          ->add_option("--texture-damping", arguments->texture_damping,
+                       "lambda of local and damped (default: local: what predicts each expression best from the "
+                       "others; damped: 0.3)")
+          ->check(CLI::PositiveNumber)
+          ->type_name("NUMBER");
+  addMapsOption(*command, arguments->maps, "Maps to take (default: all)");
+  addCompressOptions(*command, arguments->compress);
+  addDeviceOption(*command, arguments->device);
+  command->add_option("--report", arguments->report, "Also write what was done as JSON (docs/reports.md)")
+      ->type_name("FILE");
+  command->callback([arguments, damping, &common] {
+    RigOptions options;
+    options.compress = parseCompressOptions(arguments->compress);
+    options.fit.iterations = arguments->iterations;
+    options.fit.transfer = arguments->transfer == "gradients"       ? geometry::ShapeTransfer::kGradients
+                           : arguments->transfer == "displacements" ? geometry::ShapeTransfer::kDisplacements
+                                                                    : geometry::ShapeTransfer::kBest;
+    options.guess = arguments->guess;
+    options.texture_solve = arguments->texture_solve == "damped"           ? TextureSolve::kDamped
+                            : arguments->texture_solve == "pseudo-inverse" ? TextureSolve::kPseudoInverse
+                                                                           : TextureSolve::kLocal;
+    if (damping->count() > 0) options.texture_damping = arguments->texture_damping;
+    TerminalProgress progress(common.quiet);
+    const CancelOnSignal cancel(progress);
+    const Capture capture = openCapture(arguments->capture, arguments->maps);
+    const Device device = openDevice(arguments->device);
+    const RigReport report = rigCapture(capture, arguments->rig_template, arguments->output, options, device, progress);
+    if (!arguments->report.empty()) writeReport(arguments->report, toJson(report));
+    printRigReport(report);
+  });
+}
+
+}  // namespace facezip::cli

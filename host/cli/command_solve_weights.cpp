@@ -1,0 +1,81 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "commands.hpp"
+#include "facezip/error.hpp"
+#include "facezip/report.hpp"
+#include "facezip/rig.hpp"
+#include "tables.hpp"
+#include "terminal.hpp"
+
+namespace facezip::cli {
+namespace {
+namespace fs = std::filesystem;
+
+/// Files as given; of a directory its OBJ files by name.
+std::vector<fs::path> framesOf(const std::vector<std::string>& arguments) {
+  std::vector<fs::path> frames;
+  for (const std::string& argument : arguments) {
+    std::error_code error;
+    if (!fs::is_directory(argument, error)) {
+      frames.emplace_back(argument);
+      continue;
+    }
+    std::vector<fs::path> files;
+    for (const fs::directory_entry& entry : fs::directory_iterator(argument)) {
+      if (entry.is_regular_file() && entry.path().extension() == ".obj") files.push_back(entry.path());
+    }
+    if (files.empty()) throw InputError({argument, "", "OBJ files, one for each frame", "none", ""});
+    std::sort(files.begin(), files.end());
+    frames.insert(frames.end(), files.begin(), files.end());
+  }
+  return frames;
+}
+
+}  // namespace
+
+void addSolveWeightsCommand(CLI::App& app, const CommonOptions& common) {
+  struct Arguments {
+    std::string package;
+    std::vector<std::string> meshes;
+    std::string output;
+    std::string report;
+    SolveWeightsOptions options;
+  };
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand(
+      "solve-weights", "Finds the weights that pose a rig like tracked meshes, for blend --animation");
+  command->add_option("package", arguments->package, "Directory of a package that `facezip rig` made")
+      ->required()
+      ->type_name("PACKAGE");
+  command
+      ->add_option("meshes", arguments->meshes,
+                   "OBJ files of the capture's topology, a frame each; or a directory of them, taken by name")
+      ->required()
+      ->type_name("MESHES");
+  command->add_option("-o,--output", arguments->output, "Table (CSV): a row for each frame, a column for each shape")
+      ->required()
+      ->type_name("CLIP.csv");
+  command
+      ->add_option("--smoothing", arguments->options.smoothing,
+                   "Pull between the weights of neighbouring frames, 0: none; 0.01 is light")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_flag("--head-motion", arguments->options.head_motion,
+                    "The head moves in the meshes: take its rigid motion out of each frame");
+  command->add_option("--report", arguments->report, "Also write residuals as JSON (docs/reports.md)")
+      ->type_name("FILE");
+  command->callback([arguments, &common] {
+    TerminalProgress progress(common.quiet);
+    const CancelOnSignal cancel(progress);
+    const SolvedClip clip = solveWeights(arguments->package, framesOf(arguments->meshes), arguments->options, progress);
+    writeClip(arguments->output, clip);
+    if (!arguments->report.empty()) writeReport(arguments->report, toJson(clip));
+    printSolvedClip(clip);
+  });
+}
+
+}  // namespace facezip::cli

@@ -1,0 +1,44 @@
+// rig_meshes.hpp - the meshes of a rig: the subject's, the template's, and the whole face that comes of them.
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <vector>
+
+#include "facezip/capture.hpp"
+#include "facezip/geometry/example_rig.hpp"
+#include "facezip/geometry/length.hpp"
+#include "facezip/package.hpp"
+#include "facezip/progress.hpp"
+#include "facezip/rig.hpp"
+#include "rig/rig_template.hpp"
+
+namespace facezip::rig {
+
+/// What a rig is fitted to.
+struct RigSubject {
+  geometry::TriangleMesh neutral;
+  std::vector<Eigen::MatrixX3d> expressions;  ///< N positions
+  geometry::LengthUnit unit = geometry::LengthUnit::kMetre;
+
+  double millimetresPerUnit() const { return 1000.0 * geometry::metresPerUnit(unit); }
+};
+
+/// Reads the neutral and every expression's mesh, and finds their unit.
+/// Throws InputError: an expression without mesh or of another topology, a unit that cannot be guessed.
+RigSubject readSubject(const Capture& capture, const RigOptions& options, Progress& progress);
+
+/// The rig's face: the subject's skin, and the template's parts beyond it where the subject's skin wants them.
+struct RigFace {
+  geometry::TriangleMesh neutral;
+  std::vector<Eigen::MatrixX3d> shapes;  ///< M positions
+  int parts = 0;                         ///< connected parts beyond the skin
+};
+RigFace assembleFace(const RigSubject& subject, const RigTemplate& rig_template, const geometry::ExampleRig& rig);
+
+/// Writes shapes/neutral.obj, shapes/NAME.obj and rig.gltf into the directory of a package.
+/// maps  names of the package's maps and their neutral files, for the glTF's textures
+void writeFace(const std::filesystem::path& directory, const RigFace& face, const std::vector<std::string>& names,
+               const std::string& title, double metres_per_unit, const std::vector<PackageMap>& maps);
+
+}  // namespace facezip::rig

@@ -1,0 +1,86 @@
+#include "rig/rig_template.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "facezip/error.hpp"
+#include "facezip/geometry/obj_io.hpp"
+#include "facezip/geometry/topology.hpp"
+
+namespace facezip::rig {
+namespace fs = std::filesystem;
+namespace {
+
+bool isNeutral(const std::string& name) { return name == "neutral" || name == "generic_neutral"; }
+
+std::vector<fs::path> objFiles(const fs::path& directory) {
+  std::error_code error;
+  if (!fs::is_directory(directory, error)) {
+    throw InputError({directory.string(), "template", "a directory with neutral.obj and an OBJ file for each shape",
+                      fs::exists(directory, error) ? "a file" : "no such directory", ""});
+  }
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(directory)) {
+    const bool hidden = entry.path().filename().string().front() == '.';
+    if (entry.is_regular_file() && entry.path().extension() == ".obj" && !hidden) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+void requireName(const std::string& name, const fs::path& file) {
+  if (name.find_first_of("\\,=:") == std::string::npos && name.find("..") == std::string::npos) return;
+  throw InputError({file.string(), "shape", "a name without \\ , = : and ..", name, "rename the file"});
+}
+
+}  // namespace
+
+RigTemplate readTemplate(const fs::path& directory) {
+  RigTemplate found;
+  std::vector<fs::path> shape_files;
+  for (const fs::path& file : objFiles(directory)) {
+    if (!isNeutral(file.stem().string())) {
+      requireName(file.stem().string(), file);
+      found.names.push_back(file.stem().string());
+      shape_files.push_back(file);
+      continue;
+    }
+    if (!found.neutral_file.empty()) {
+      throw InputError({directory.string(), "template", "one neutral",
+                        found.neutral_file.filename().string() + " and " + file.filename().string(), "remove one"});
+    }
+    found.neutral_file = file;
+  }
+  if (found.neutral_file.empty()) {
+    throw InputError({directory.string(), "template", "neutral.obj or generic_neutral.obj", "neither", ""});
+  }
+  if (shape_files.empty()) {
+    throw InputError({directory.string(), "template", "an OBJ file for each shape beside the neutral", "none", ""});
+  }
+  found.neutral = geometry::readObj(found.neutral_file);
+  found.shapes.resize(shape_files.size());
+  tbb::parallel_for(std::size_t{0}, shape_files.size(), [&](std::size_t m) {
+    const geometry::TriangleMesh shape = geometry::readObj(shape_files[m]);
+    geometry::requireSameTopology(found.neutral, found.neutral_file.string(), shape, shape_files[m].string());
+    found.shapes[m] = shape.positions;
+  });
+  return found;
+}
+
+void requireSkin(const RigTemplate& rig_template, const geometry::TriangleMesh& mesh, const std::string& mesh_file) {
+  const geometry::TriangleMesh& whole = rig_template.neutral;
+  geometry::TriangleMesh skin;  // the first vertices and triangles; UVs are the capture's
+  skin.positions = whole.positions.topRows(std::min(whole.positions.rows(), mesh.positions.rows()));
+  skin.triangles = whole.triangles.topRows(std::min(whole.triangles.rows(), mesh.triangles.rows()));
+  geometry::requireSameTopology(mesh, mesh_file, skin, rig_template.neutral_file.string());
+  for (Eigen::Index t = skin.triangles.rows(); t < whole.triangles.rows(); ++t) {
+    if (whole.triangles.row(t).maxCoeff() >= mesh.positions.rows()) continue;
+    throw InputError({rig_template.neutral_file.string(), fmt::format("triangle {} (counted from 0)", t),
+                      fmt::format("a part beyond the {} vertices of {}", mesh.positions.rows(), mesh_file),
+                      "a triangle of the skin alone", "use a template of the capture's topology"});
+  }
+}
+
+}  // namespace facezip::rig

@@ -1,0 +1,39 @@
+// rig_weights.hpp - the weight maps of a rig's shapes, into a package that has those of the captured expressions.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "compress/face.hpp"
+#include "compress/map_set.hpp"
+#include "facezip/capture.hpp"
+#include "facezip/package.hpp"
+#include "facezip/progress.hpp"
+#include "rig/skin_features.hpp"
+#include "rig/texture_solve.hpp"
+
+namespace facezip::rig {
+
+/// What was chosen for the local solve, and how well it does.
+struct ChosenSolve {
+  TextureSolver solver;
+  double left_out_rmse = 0.0;     ///< 1/255
+  double left_out_nothing = 0.0;  ///< likewise, of predicting no change
+};
+
+/// Maps of a capture as the package blends them.
+compress::MapSet openPackageMaps(const Capture& capture, const compress::Face& face, const Package& package);
+
+/// Takes lambda and the share of strain from the options, or from leaving captured expressions out.
+ChosenSolve chooseSolve(const RigOptions& options, const Eigen::MatrixXd& weights, const SkinFeatures& features,
+                        compress::MapSet& maps, Progress& progress);
+
+/// Replaces the weights and the names of the package in `directory`: `captured` names, then those of the shapes, whose
+/// weight maps follow from the captured ones'. Atlas and package.json are written anew; textures stay.
+/// Throws InputError, OutputError, Cancelled.
+void addShapeWeights(const std::filesystem::path& directory, const std::vector<std::string>& captured,
+                     const std::vector<std::string>& shapes, const TextureSolver& solver, const SkinFeatures& features,
+                     const compress::MapSet& maps, Progress& progress);
+
+}  // namespace facezip::rig

@@ -1,0 +1,43 @@
+// skin_features.hpp - what the captured expressions and the rig's shapes do to the skin at a point of it.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "facezip/geometry/example_rig.hpp"
+#include "facezip/geometry/mesh.hpp"
+#include "raster/uv_raster.hpp"
+
+namespace facezip::rig {
+
+/// At one point of the skin.
+struct PointFeatures {
+  Eigen::VectorXd influence;    ///< M: how far each shape of the template strains the skin, 1 where any does most
+  Eigen::MatrixXd of_examples;  ///< N by 12: stretch and compression of the skin in each expression
+  Eigen::MatrixXd of_shapes;    ///< M by 12: in each shape of the rig
+};
+
+class SkinFeatures {
+ public:
+  /// mesh  the subject's neutral;  examples  N positions;  rig  fitted to them
+  SkinFeatures(const geometry::TriangleMesh& mesh, const std::vector<Eigen::MatrixX3d>& examples,
+               const geometry::ExampleRig& rig);
+
+  PointFeatures at(const raster::TexelSample& sample) const;
+
+ private:
+  Eigen::MatrixX3i triangles_;
+  Eigen::Index examples_, shapes_;
+  /// #V rows: M influences, then 12 numbers of each expression, then of each shape. In units in which the mean square
+  /// of an expression's 12 is 1.
+  Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> vertices_;
+};
+
+/// The covered texel nearest to the centre of each cell of a weight grid, row-major; kEmpty where a cell has none.
+/// scale  texels per cell and axis
+std::vector<raster::TexelSample> cellSamples(const raster::UvRaster& raster, int scale);
+
+/// For every cell the nearest one (in steps along the grid) that has a sample; -1 for all where none has.
+std::vector<int> nearestSampled(const std::vector<raster::TexelSample>& cells, int columns, int rows);
+
+}  // namespace facezip::rig

@@ -1,0 +1,181 @@
+// solve_weights.cpp - which weights of a rig make the meshes that were tracked.
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "facezip/geometry/obj_io.hpp"
+#include "facezip/geometry/topology.hpp"
+#include "facezip/geometry/weight_solver.hpp"
+#include "facezip/rig.hpp"
+#include "io/staged_directory.hpp"
+
+namespace facezip {
+namespace {
+namespace fs = std::filesystem;
+
+// Frames that are in memory at once.
+constexpr std::size_t kBatch = 64;
+// Rounds of pose and motion; most heads need three.
+constexpr int kMotionRounds = 20;
+constexpr double kMotionSettled = 1e-5;
+// Sweeps over the frames of a smoothed clip.
+constexpr int kSmoothingSweeps = 200;
+constexpr double kSmoothingSettled = 1e-5;
+
+struct LoadedRig {
+  geometry::TriangleMesh skin;  ///< neutral of the captured topology
+  std::string neutral_file;
+  std::vector<Eigen::MatrixX3d> shapes;  ///< displacements of the skin
+};
+
+LoadedRig load(const Rig& rig) {
+  const fs::path folder = rig.directory / "shapes";
+  LoadedRig loaded;
+  loaded.neutral_file = (folder / "neutral.obj").string();
+  const geometry::TriangleMesh whole = geometry::readObj(loaded.neutral_file);
+  if (whole.positions.rows() < rig.skin_vertices) {
+    throw InputError({loaded.neutral_file, "vertices", fmt::format("at least {}", rig.skin_vertices),
+                      fmt::format("{}", whole.positions.rows()), "make the package again"});
+  }
+  loaded.shapes.resize(rig.shapes.size());
+  tbb::parallel_for(std::size_t{0}, rig.shapes.size(), [&](std::size_t m) {
+    const std::string file = (folder / (rig.shapes[m] + ".obj")).string();
+    const geometry::TriangleMesh shape = geometry::readObj(file);
+    geometry::requireSameTopology(whole, loaded.neutral_file, shape, file);
+    loaded.shapes[m] = (shape.positions - whole.positions).topRows(rig.skin_vertices);
+  });
+  // Parts beyond the skin come last.
+  Eigen::Index triangles = whole.triangles.rows();
+  while (triangles > 0 && whole.triangles.row(triangles - 1).maxCoeff() >= rig.skin_vertices) --triangles;
+  loaded.skin.positions = whole.positions.topRows(rig.skin_vertices);
+  loaded.skin.triangles = whole.triangles.topRows(triangles);
+  return loaded;
+}
+
+class ClipSolver {
+ public:
+  ClipSolver(const Rig& rig, const LoadedRig& loaded, const SolveWeightsOptions& options)
+      : rig_(rig), options_(options), solver_(loaded.skin.positions, loaded.shapes) {}
+
+  struct Frame {
+    Eigen::VectorXd projected;  ///< B^T (mesh - neutral), without the head's motion
+    Eigen::VectorXd weights;
+  };
+
+  /// A frame by itself.
+  Frame solve(const Eigen::MatrixX3d& mesh) const {
+    Frame frame;
+    frame.weights = Eigen::VectorXd::Zero(solver_.shapes());
+    frame.projected = solver_.project(mesh);
+    if (!options_.head_motion) {
+      frame.weights = solver_.solve(frame.projected, frame.weights, 0.0);
+      return frame;
+    }
+    for (int round = 0; round < kMotionRounds; ++round) {
+      frame.projected = solver_.project(still(mesh, frame.weights));
+      const Eigen::VectorXd next = solver_.solve(frame.projected, frame.weights, 0.0);
+      const double change = (next - frame.weights).cwiseAbs().maxCoeff();
+      frame.weights = next;
+      if (change < kMotionSettled) break;
+    }
+    return frame;
+  }
+
+  /// minimises  sum_f |B w_f - d_f|^2 + s mean|b|^2 sum_f |w_f - w_f+1|^2  over the clip, a frame at a time.
+  void smooth(std::vector<Frame>& frames) const {
+    if (options_.smoothing <= 0.0 || frames.size() < 2) return;
+    for (int sweep = 0; sweep < kSmoothingSweeps; ++sweep) {
+      double change = 0.0;
+      for (std::size_t f = 0; f < frames.size(); ++f) {
+        Eigen::VectorXd near = Eigen::VectorXd::Zero(solver_.shapes());
+        double neighbours = 0.0;
+        if (f > 0) near += frames[f - 1].weights, ++neighbours;
+        if (f + 1 < frames.size()) near += frames[f + 1].weights, ++neighbours;
+        const Eigen::VectorXd next =
+            solver_.solve(frames[f].projected, near / neighbours, neighbours * options_.smoothing);
+        change = std::max(change, (next - frames[f].weights).cwiseAbs().maxCoeff());
+        frames[f].weights = next;
+      }
+      if (change < kSmoothingSettled) break;
+    }
+  }
+
+  RigResidual residual(const Eigen::MatrixX3d& mesh, const Eigen::VectorXd& weights) const {
+    const geometry::Distances found =
+        geometry::distancesBetween(solver_.pose(weights), options_.head_motion ? still(mesh, weights) : mesh);
+    const double scale = rig_.millimetres_per_unit;
+    return {scale * found.mean, scale * found.percentile_99, scale * found.largest};
+  }
+
+ private:
+  Eigen::MatrixX3d still(const Eigen::MatrixX3d& mesh, const Eigen::VectorXd& weights) const {
+    return geometry::undo(solver_.headMotion(solver_.pose(weights), mesh), mesh);
+  }
+
+  const Rig& rig_;
+  const SolveWeightsOptions& options_;
+  geometry::WeightSolver solver_;
+};
+
+Eigen::MatrixX3d readFrame(const fs::path& file, const LoadedRig& loaded) {
+  const geometry::TriangleMesh mesh = geometry::readObj(file);
+  geometry::requireSameTopology(loaded.skin, loaded.neutral_file, mesh, file.string());
+  return mesh.positions;
+}
+
+}  // namespace
+
+SolvedClip solveWeights(const fs::path& package, const std::vector<fs::path>& meshes,
+                        const SolveWeightsOptions& options, Progress& progress) {
+  if (meshes.empty()) throw InputError({"meshes", "", "at least one OBJ file", "none", ""});
+  if (!(options.smoothing >= 0.0 && options.smoothing <= 1e6)) {
+    throw InputError({"--smoothing", "", "0 or more", fmt::format("{}", options.smoothing), ""});
+  }
+  const Rig rig = openRig(package);
+  const LoadedRig loaded = load(rig);
+  const ClipSolver solver(rig, loaded, options);
+  const auto begin = std::chrono::steady_clock::now();
+  std::vector<ClipSolver::Frame> frames(meshes.size());
+  SolvedClip clip;
+  clip.shapes = rig.shapes;
+  clip.residuals.resize(meshes.size());
+  const bool smoothed = options.smoothing > 0.0 && meshes.size() > 1;
+  const auto forEachFrame = [&](const char* stage, const auto& visit) {
+    progress.stage(stage, meshes.size());
+    for (std::size_t first = 0; first < meshes.size(); first += kBatch) {
+      progress.checkCancelled();
+      const std::size_t last = std::min(first + kBatch, meshes.size());
+      tbb::parallel_for(first, last, [&](std::size_t f) { visit(f, readFrame(meshes[f], loaded)); });
+      progress.advance(last);
+    }
+  };
+  forEachFrame("solving weights", [&](std::size_t f, const Eigen::MatrixX3d& mesh) {
+    frames[f] = solver.solve(mesh);
+    if (!smoothed) clip.residuals[f] = solver.residual(mesh, frames[f].weights);
+  });
+  if (smoothed) {
+    solver.smooth(frames);
+    forEachFrame("measuring residuals", [&](std::size_t f, const Eigen::MatrixX3d& mesh) {
+      clip.residuals[f] = solver.residual(mesh, frames[f].weights);
+    });
+  }
+  for (const ClipSolver::Frame& frame : frames) clip.weights.emplace_back(frame.weights.begin(), frame.weights.end());
+  clip.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return clip;
+}
+
+void writeClip(const fs::path& file, const SolvedClip& clip) {
+  std::string text = "frame";
+  for (const std::string& shape : clip.shapes) text += "," + shape;
+  text += "\n";
+  for (std::size_t f = 0; f < clip.weights.size(); ++f) {
+    text += fmt::format("{}", f);
+    for (const double weight : clip.weights[f]) text += fmt::format(",{:.6g}", weight);
+    text += "\n";
+  }
+  io::writeTextFileAtomically(file, text);
+}
+
+}  // namespace facezip

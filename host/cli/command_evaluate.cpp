@@ -37,10 +37,10 @@ void addEvaluateCommand(CLI::App& app, const CommonOptions& common) {
   command
       ->add_option("--baselines", arguments->baselines,
                    "What to compare with: pca4, pca8, limit (best components of every block), no-permutation, paper, "
-                   "closed-loop, refined, weights-per-map (each compresses once more), or none")
+                   "closed-loop, refined, weights-per-map, compress-stretch (each compresses once more), or none")
       ->delimiter(',')
-      ->check(CLI::IsMember(
-          {"pca4", "pca8", "limit", "no-permutation", "paper", "closed-loop", "refined", "weights-per-map", "none"}))
+      ->check(CLI::IsMember({"pca4", "pca8", "limit", "no-permutation", "paper", "closed-loop", "refined",
+                             "weights-per-map", "compress-stretch", "none"}))
       ->capture_default_str();
   command->add_flag("--shapes", arguments->shapes,
                     "The capture's expressions are single shapes of the package's rig, by name");
@@ -72,6 +72,7 @@ void addEvaluateCommand(CLI::App& app, const CommonOptions& common) {
     options.pca8 = wanted("pca8");
     options.no_permutation = wanted("no-permutation");
     options.paper = wanted("paper");
+    options.compress_stretch = wanted("compress-stretch");
     options.closed_loop = wanted("closed-loop");
     options.refined = wanted("refined");
     options.weights_per_map = wanted("weights-per-map");
@@ -85,8 +86,8 @@ void addEvaluateCommand(CLI::App& app, const CommonOptions& common) {
     TerminalProgress progress(common.quiet);
     const CancelOnSignal cancel(progress);
     const Package package = Package::open(arguments->package);
-    const Evaluation evaluation =
-        evaluatePackage(openCapture(arguments->capture), package, options, openDevice(arguments->device, &progress), progress);
+    const Evaluation evaluation = evaluatePackage(openCapture(arguments->capture), package, options,
+                                                  openDevice(arguments->device, &progress), progress);
     if (!arguments->report.empty()) writeReport(arguments->report, toJson(evaluation));
     if (!arguments->picture.empty()) writeErrorSheet(arguments->picture, evaluation);
     printEvaluation(evaluation);

@@ -13,6 +13,7 @@ PermutationSolver parseSolver(const std::string& name) {
 CompressOptions::Method parseMethod(const std::string& name) {
   if (name == "closed-loop") return CompressOptions::Method::kClosedLoop;
   if (name == "paper") return CompressOptions::Method::kPaper;
+  if (name == "compress-stretch") return CompressOptions::Method::kCompressStretch;
   if (name == "no-permutation") return CompressOptions::Method::kNoPermutation;
   return CompressOptions::Method::kRefined;
 }
@@ -42,8 +43,8 @@ void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
   command
       .add_option("--method", arguments.method,
                   "refined; closed-loop: the paper's weights, textures fitted to them; paper: the FaceZip method; "
-                  "no-permutation: its ablation")
-      ->check(CLI::IsMember({"refined", "closed-loop", "paper", "no-permutation"}))
+                  "no-permutation: its ablation; compress-stretch: the two maps of Li et al. 2020 (needs every mesh)")
+      ->check(CLI::IsMember({"refined", "closed-loop", "paper", "no-permutation", "compress-stretch"}))
       ->capture_default_str();
   CLI::Option* differences = command
                                  .add_option("--differences", options.differences,

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-namespace reference {
+namespace facezip::reference {
 
 using Square = std::vector<std::vector<double>>;
 
@@ -77,4 +77,4 @@ inline double smallestInBox(const Square& h, const std::vector<double>& g, doubl
   return best;
 }
 
-}  // namespace reference
+}  // namespace facezip::reference

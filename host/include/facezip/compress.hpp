@@ -30,6 +30,9 @@ struct CompressOptions {
     kClosedLoop,     ///< the paper's weights, and per texel the difference textures that suit them best as decoded
     kPaper,          ///< clusters, permuted so that seams fit (FaceZip, section 3.1)
     kNoPermutation,  ///< clusters in the order of the clustering; the paper's ablation, for comparison only
+    /// Compress and stretch maps (Li et al. 2020, Eq. 10 to 14), the industry's usual: C is 2, whatever `differences`
+    /// says. Needs the mesh of every expression.
+    kCompressStretch,
   };
   Method method = Method::kRefined;
   int differences = 4;  ///< C, difference textures of every map and weight channels of every expression; 1 to 8

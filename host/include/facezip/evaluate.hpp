@@ -19,12 +19,13 @@ namespace facezip {
 /// What to measure beside the package. A method of compression costs one compression more, with the package's own
 /// settings, in the directory for temporary files; the method that the package was made with costs nothing.
 struct EvaluateOptions {
-  bool pca4 = true;            ///< PCA with 4 components, the neutral as mean
-  bool pca8 = true;            ///< with 8
-  bool no_permutation = true;  ///< the paper's method without permuting clusters
-  bool paper = true;           ///< the paper's method
-  bool closed_loop = false;    ///< the paper's weights, difference textures fitted to them
-  bool refined = false;        ///< weights and difference textures fitted in turn
+  bool pca4 = true;               ///< PCA with 4 components, the neutral as mean
+  bool pca8 = true;               ///< with 8
+  bool no_permutation = true;     ///< the paper's method without permuting clusters
+  bool paper = true;              ///< the paper's method
+  bool compress_stretch = false;  ///< compress and stretch maps; needs the expressions' meshes
+  bool closed_loop = false;       ///< the paper's weights, difference textures fitted to them
+  bool refined = false;           ///< weights and difference textures fitted in turn
   /// The package's own method with weights of their own for every map: what it costs to share them. One compression
   /// more where the maps of the package do.
   bool weights_per_map = false;

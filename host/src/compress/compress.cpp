@@ -15,6 +15,7 @@
 #include "compress/band_plan.hpp"
 #include "compress/code_bits.hpp"
 #include "compress/compress_options.hpp"
+#include "compress/compress_stretch.hpp"
 #include "compress/face.hpp"
 #include "compress/face_guides.hpp"
 #include "compress/gram.hpp"
@@ -76,6 +77,7 @@ class Compression {
         staged_(package, io::StagedDirectory::Existing::kReplaceMarked, "package.json"),
         buffers_(std::make_unique<BandBuffers>(context_)) {
     report_.device = device.info().name;
+    if (options_.method == Method::kCompressStretch) options_.differences = kCompressStretchMaps;
   }
 
   CompressReport run() {
@@ -339,6 +341,10 @@ class Compression {
 
   // Clusters of every mask and their place in the textures, and the weights that follow (Eq. 6). Touches no texel.
   void assign(WeightGroup& group) {
+    if (options_.method == Method::kCompressStretch) {
+      assignInfluences(group);
+      return;
+    }
     progress_.stage("clustering", 0);
     KmeansOptions kmeans;
     kmeans.clusters = options_.differences;
@@ -367,6 +373,25 @@ class Compression {
     clock_.book("weight maps");
   }
 
+  // Li et al. 2020, Eq. 10 to 12: the weights follow from the meshes alone.
+  void assignInfluences(WeightGroup& group) {
+    progress_.stage("influences", 0);
+    group.start = normalisedInfluences(
+        face_.mesh,
+        vertexInfluences(face_.mesh,
+                         readExpressionMeshes(capture_, face_.mesh, "its mesh, for its influence", progress_)),
+        *maps_.maps[maps_.reference].raster, options_.weight_scale);
+    clock_.book("influences");
+  }
+
+  /// Difference textures that follow from the weights as they are.
+  std::unique_ptr<TextureSource> directTextures(const WeightGroup& group) {
+    if (options_.method == Method::kCompressStretch) {
+      return std::make_unique<CompressStretchTextures>(context_, weightSpace(), group.start);
+    }
+    return std::make_unique<ClusterTextures>(context_, *texel_masks_, group.coefficients);
+  }
+
   Permutation choosePermutation(const SeamTables& tables) {
     if (options_.method == CompressOptions::Method::kNoPermutation) return identityPermutation(tables);
     PermutationSolverOptions solver;
@@ -385,14 +410,14 @@ class Compression {
 
   // Pass 2 of the paper's method: how far the difference textures reach, since their codes must hold them.
   void solvePaper(WeightGroup& group) {
-    ClusterTextures source(context_, *texel_masks_, group.coefficients);
+    const std::unique_ptr<TextureSource> source = directTextures(group);
     TextureRangeFinder finder(context_, options_.differences);
     group.weights = group.start;
     group.ranges.assign(group.maps.size(), {});
     for (std::size_t m = 0; m < group.maps.size(); ++m) {
       OpenMap& map = *group.maps[m];
-      forEachBand(map, "range of the differences", source, [&](const MapBand& band) {
-        const cl::Buffer& textures = source.compute(map, band);
+      forEachBand(map, "range of the differences", *source, [&](const MapBand& band) {
+        const cl::Buffer& textures = source->compute(map, band);
         widen(group.ranges[m], finder.find(band.tiles, band.shape, textures, 0, band.tiles.tileCount()));
       });
     }
@@ -433,6 +458,7 @@ class Compression {
     switch (options_.method) {
       case Method::kPaper:
       case Method::kNoPermutation:
+      case Method::kCompressStretch:
         for (WeightGroup& group : groups_) solvePaper(group);
         write();
         return;
@@ -486,7 +512,7 @@ class Compression {
       std::size_t group;
     };
     std::vector<Fitted> fitted;
-    const bool paper = options_.method == Method::kPaper || options_.method == Method::kNoPermutation;
+    const bool paper = options_.method != Method::kClosedLoop && options_.method != Method::kRefined;
     solution.maps.resize(maps_.maps.size());  // in the capture's order; their addresses stay
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       const WeightGroup& group = groups_[g];
@@ -498,7 +524,7 @@ class Compression {
         if (!paper) out.bits = bitsOf(group, m);
         for (const TextureRange& range : group.ranges[m]) out.encoding.push_back(encodingFor(range, out.bits));
         if (paper) {
-          sources.push_back(std::make_unique<ClusterTextures>(context_, *texel_masks_, group.coefficients));
+          sources.push_back(directTextures(group));
         } else {
           auto source =
               std::make_unique<FittedTextures>(context_, weightSpace(), group.weights,

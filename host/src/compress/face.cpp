@@ -86,6 +86,26 @@ std::vector<Eigen::MatrixX3f> readExpressionMeshes(const Capture& capture, const
   return positions;
 }
 
+std::vector<Eigen::MatrixX3d> readExpressionMeshes(const Capture& capture, const geometry::TriangleMesh& neutral,
+                                                   const std::string& needed_for, Progress& progress) {
+  for (std::size_t n = 0; n < capture.expressions.size(); ++n) {
+    if (!capture.expression_meshes[n].empty()) continue;
+    throw InputError({(capture.directory / "expressions" / (capture.expressions[n] + ".obj")).string(),
+                      fmt::format("expression \"{}\"", capture.expressions[n]), needed_for, "no such file",
+                      "add the mesh, or take the expression out of the capture"});
+  }
+  progress.stage("reading expressions", capture.expressions.size());
+  std::vector<Eigen::MatrixX3d> meshes(capture.expressions.size());
+  tbb::parallel_for(std::size_t{0}, meshes.size(), [&](std::size_t n) {
+    progress.checkCancelled();
+    const fs::path& file = capture.expression_meshes[n];
+    const geometry::TriangleMesh mesh = geometry::readObj(file);
+    geometry::requireSameTopology(neutral, capture.neutral_mesh.string(), mesh, file.string());
+    meshes[n] = mesh.positions;
+  });
+  return meshes;
+}
+
 namespace {
 
 /// Finds the mesh's unit where a length in a physical unit has to be applied to it.

@@ -32,6 +32,11 @@ Face readFace(const Capture& capture, const std::string& region);
 std::vector<Eigen::MatrixX3f> readExpressionMeshes(const Capture& capture, const geometry::TriangleMesh& neutral,
                                                    Progress& progress);
 
+/// Positions of every expression's mesh, N. needed_for  for the message where one is missing, "its mesh, to ..."
+/// Throws InputError where an expression has no mesh, or one of another topology.
+std::vector<Eigen::MatrixX3d> readExpressionMeshes(const Capture& capture, const geometry::TriangleMesh& neutral,
+                                                   const std::string& needed_for, Progress& progress);
+
 /// The masks of a face (FaceZip 3.1, "Mask Computation").
 struct FaceMasks {
   std::optional<geometry::LengthUnit> unit;  ///< of the mesh; none when neither stated nor needed

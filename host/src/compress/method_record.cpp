@@ -12,7 +12,8 @@ using Method = CompressOptions::Method;
 constexpr std::pair<Method, const char*> kMethods[] = {{Method::kRefined, "refined"},
                                                        {Method::kClosedLoop, "closed-loop"},
                                                        {Method::kPaper, "paper"},
-                                                       {Method::kNoPermutation, "no-permutation"}};
+                                                       {Method::kNoPermutation, "no-permutation"},
+                                                       {Method::kCompressStretch, "compress-stretch"}};
 
 constexpr std::pair<PermutationSolver, const char*> kSolvers[] = {
     {PermutationSolver::kBest, "best"},

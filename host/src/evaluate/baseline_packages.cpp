@@ -34,6 +34,8 @@ std::string methodKey(CompressOptions::Method method) {
       return "closed_loop";
     case CompressOptions::Method::kPaper:
       return "paper";
+    case CompressOptions::Method::kCompressStretch:
+      return "compress_stretch";
     case CompressOptions::Method::kNoPermutation:
       break;
   }

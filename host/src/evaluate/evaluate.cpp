@@ -107,6 +107,7 @@ class Evaluator {
     }
     if (options_.no_permutation) addCandidate(Method::kNoPermutation);
     if (options_.paper) addCandidate(Method::kPaper);
+    if (options_.compress_stretch) addCandidate(Method::kCompressStretch);
     if (options_.closed_loop) addCandidate(Method::kClosedLoop);
     if (options_.refined) addCandidate(Method::kRefined);
     if (options_.weights_per_map) addWeightsPerMap();

@@ -11,7 +11,7 @@ namespace facezip::rig {
 
 /// Cells with their Gram matrices, summed over all maps by their fit weights; at most `most` of them, evenly spread
 /// over those that have a sample. One pass over the textures.
-/// samples  of the cells of the grid: cellSamples()
+/// samples  of the cells of the grid: raster::cellSamples()
 /// covered_samples  receives the number of covered texels times channels and weights that the cells have in all
 std::vector<SolvedCell> gatherCells(compress::MapSet& maps, const SkinFeatures& features,
                                     const std::vector<raster::TexelSample>& samples, int columns, std::size_t most,

@@ -42,7 +42,10 @@ std::vector<std::string> packageNamesOf(const std::vector<std::string>& expressi
   for (std::string& name : renamed) {
     if (!taken(name, shapes)) continue;
     const std::string before = name;
-    while (taken(name, shapes) || taken(name, renamed)) name += "_captured";
+    std::string longer = name;
+    do longer += "_captured";
+    while (taken(longer, shapes) || taken(longer, renamed));
+    name = longer;
     progress.note(fmt::format("\"{}\" names a shape too: the captured expression is \"{}\"", before, name));
   }
   return renamed;

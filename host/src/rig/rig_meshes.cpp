@@ -5,10 +5,10 @@
 
 #include <algorithm>
 
+#include "compress/face.hpp"
 #include "export/gltf_scene.hpp"
 #include "facezip/geometry/obj_io.hpp"
 #include "facezip/geometry/part_transfer.hpp"
-#include "facezip/geometry/topology.hpp"
 #include "facezip/package.hpp"
 #include "io/staged_directory.hpp"
 
@@ -70,20 +70,8 @@ std::string neutralOf(const std::vector<PackageMap>& maps, const std::vector<std
 RigSubject readSubject(const Capture& capture, const RigOptions& options, Progress& progress) {
   RigSubject subject;
   subject.neutral = geometry::readObj(capture.neutral_mesh);
-  subject.expressions.resize(capture.expressions.size());
-  for (std::size_t n = 0; n < capture.expressions.size(); ++n) {
-    if (!capture.expression_meshes[n].empty()) continue;
-    throw InputError({(capture.directory / "expressions" / (capture.expressions[n] + ".obj")).string(),
-                      fmt::format("expression \"{}\"", capture.expressions[n]), "its mesh, to fit the rig to",
-                      "no such file", "add the mesh, or take the expression out of the capture"});
-  }
-  progress.stage("reading expressions", capture.expressions.size());
-  tbb::parallel_for(std::size_t{0}, capture.expressions.size(), [&](std::size_t n) {
-    const auto& file = capture.expression_meshes[n];
-    const geometry::TriangleMesh mesh = geometry::readObj(file);
-    geometry::requireSameTopology(subject.neutral, capture.neutral_mesh.string(), mesh, file.string());
-    subject.expressions[n] = mesh.positions;
-  });
+  subject.expressions =
+      compress::readExpressionMeshes(capture, subject.neutral, "its mesh, to fit the rig to", progress);
   subject.unit = unitOf(capture, options, subject.neutral, progress);
   return subject;
 }

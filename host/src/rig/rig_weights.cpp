@@ -11,6 +11,7 @@
 #include "io/staged_directory.hpp"
 #include "package/package_json.hpp"
 #include "package/weight_atlas.hpp"
+#include "raster/cell_samples.hpp"
 #include "rig/cell_grams.hpp"
 
 namespace facezip::rig {
@@ -59,8 +60,8 @@ compress::EncodedWeights solveSet(const Package& package, int set, const Texture
   const int channels = package.differences();
   const auto count = static_cast<int>(captured.cols());
   const auto shapes = static_cast<int>(solver.weights.cols());
-  const std::vector<raster::TexelSample> samples = cellSamples(*map.raster, map.weight_scale);
-  const std::vector<int> source = nearestSampled(samples, grid.tile_width, grid.tile_height);
+  const std::vector<raster::TexelSample> samples = raster::cellSamples(*map.raster, map.weight_scale);
+  const std::vector<int> source = raster::nearestSampled(samples, grid.tile_width, grid.tile_height);
   const compress::WeightSpace space{grid.tile_width, grid.tile_height, channels, count + shapes};
   compress::GridWeights weights(space);
   const Eigen::MatrixXd everywhere = solver.method == TextureSolve::kLocal ? Eigen::MatrixXd() : globalSolution(solver);
@@ -99,7 +100,8 @@ compress::EncodedWeights solveSet(const Package& package, int set, const Texture
 }  // namespace
 
 compress::MapSet openPackageMaps(const Capture& capture, const compress::Face& face, const Package& package) {
-  compress::MapSet maps = compress::openMaps(capture, face, 0);
+  compress::MapSet maps = compress::openMaps(capture);
+  compress::makeRasters(maps, face, 0);
   for (std::size_t m = 0; m < maps.maps.size(); ++m) {
     maps.maps[m].weight_scale = package.maps()[m].weight_scale;
     maps.maps[m].fit_weight = maps.maps[m].metric_weight;
@@ -113,7 +115,7 @@ ChosenSolve chooseSolve(const RigOptions& options, const Eigen::MatrixXd& weight
   chosen.solver = {options.texture_solve, weights, options.texture_damping.value_or(0.3), 0.0};
   if (options.texture_solve != TextureSolve::kLocal) return chosen;
   const compress::OpenMap& map = maps.maps[maps.reference];
-  const std::vector<raster::TexelSample> samples = cellSamples(*map.raster, map.weight_scale);
+  const std::vector<raster::TexelSample> samples = raster::cellSamples(*map.raster, map.weight_scale);
   const int columns = (map.samples->shape().width + map.weight_scale - 1) / map.weight_scale;
   double count = 0.0;
   const std::vector<SolvedCell> cells =

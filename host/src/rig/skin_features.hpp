@@ -33,11 +33,4 @@ class SkinFeatures {
   Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> vertices_;
 };
 
-/// The covered texel nearest to the centre of each cell of a weight grid, row-major; kEmpty where a cell has none.
-/// scale  texels per cell and axis
-std::vector<raster::TexelSample> cellSamples(const raster::UvRaster& raster, int scale);
-
-/// For every cell the nearest one (in steps along the grid) that has a sample; -1 for all where none has.
-std::vector<int> nearestSampled(const std::vector<raster::TexelSample>& cells, int columns, int rows);
-
 }  // namespace facezip::rig

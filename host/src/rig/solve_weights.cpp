@@ -120,7 +120,8 @@ class ClipSolver {
 };
 
 Eigen::MatrixX3d readFrame(const fs::path& file, const LoadedRig& loaded) {
-  const geometry::TriangleMesh mesh = geometry::readObj(file);
+  geometry::TriangleMesh mesh = geometry::readObj(file);
+  mesh.uv_triangles.resize(0, 3);  // trackers keep the order of vertices and faces, not always the UVs
   geometry::requireSameTopology(loaded.skin, loaded.neutral_file, mesh, file.string());
   return mesh.positions;
 }

@@ -1,0 +1,111 @@
+#include "compress/compress_stretch.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "compress/difference.hpp"
+#include "compress/difference_fit.hpp"
+#include "compress/refinement.hpp"
+#include "facezip/geometry/skin_strain.hpp"
+#include "raster/cell_samples.hpp"
+
+namespace facezip::compress {
+
+Eigen::MatrixXd vertexInfluences(const geometry::TriangleMesh& neutral,
+                                 const std::vector<Eigen::MatrixX3d>& expressions) {
+  const geometry::SkinStrain skin(neutral.positions, neutral.triangles);
+  const Eigen::ArrayXd before = skin.ringLengths(neutral.positions).array();
+  const Eigen::ArrayXd unit = (before > 0.0).select(kInfluenceUnit * before, std::numeric_limits<double>::infinity());
+  Eigen::MatrixXd influences(neutral.positions.rows(), 2 * static_cast<Eigen::Index>(expressions.size()));
+  for (std::size_t n = 0; n < expressions.size(); ++n) {
+    const Eigen::ArrayXd change = (skin.ringLengths(expressions[n]).array() - before) / unit;
+    const auto column = 2 * static_cast<Eigen::Index>(n);
+    influences.col(column) = (-change).max(0.0);
+    influences.col(column + 1) = change.max(0.0);
+  }
+  return influences;
+}
+
+EncodedWeights normalisedInfluences(const geometry::TriangleMesh& neutral, const Eigen::MatrixXd& influences,
+                                    const raster::UvRaster& raster, int scale) {
+  const Eigen::Index expressions = influences.cols() / 2;
+  const int columns = (raster.width() + scale - 1) / scale;
+  const int rows = (raster.height() + scale - 1) / scale;
+  const std::vector<raster::TexelSample> samples = raster::cellSamples(raster, scale);
+  const std::vector<int> source = raster::nearestSampled(samples, columns, rows);
+  // Normalised influences are shares: 255 codes from 0 to 1.
+  EncodedWeights encoded{{1.0 / 255.0, 1.0 / 255.0}, {0.0, 0.0}, {}};
+  encoded.codes.assign(static_cast<std::size_t>(expressions * kCompressStretchMaps) * samples.size(), 0);
+  for (std::size_t cell = 0; cell < samples.size(); ++cell) {
+    if (source[cell] < 0) continue;
+    const raster::TexelSample& at = samples[static_cast<std::size_t>(source[cell])];
+    const auto corner = [&](int c) { return influences.row(neutral.triangles(at.triangle, c)).array(); };
+    const Eigen::ArrayXd here = static_cast<double>(at.b0) * corner(0) + static_cast<double>(at.b1) * corner(1) +
+                                (1.0 - static_cast<double>(at.b0) - static_cast<double>(at.b1)) * corner(2);
+    for (int i = 0; i < kCompressStretchMaps; ++i) {
+      const Eigen::ArrayXd of_map = here.reshaped(2, expressions).row(i);
+      const Eigen::ArrayXd shares = (of_map - of_map.maxCoeff()).exp();  // Eq. 12, without overflow
+      for (Eigen::Index n = 0; n < expressions; ++n) {
+        const std::size_t entry = (static_cast<std::size_t>(n) * samples.size() + cell) * kCompressStretchMaps;
+        encoded.codes[entry + static_cast<std::size_t>(i)] =
+            static_cast<std::uint8_t>(std::lround(255.0 * shares[n] / shares.sum()));
+      }
+    }
+  }
+  return encoded;
+}
+
+CompressStretchTextures::CompressStretchTextures(device::DeviceContext& context, const WeightSpace& space,
+                                                 const EncodedWeights& influences, device::KernelVariant variant)
+    : influences_(influences),
+      context_(context),
+      gpu_(context.resolve(variant) == device::KernelVariant::kGpu),
+      window_(context, space),
+      textures_(context, "compress and stretch maps") {}
+
+TileMasks CompressStretchTextures::tiles(const OpenMap& map, int begin, int end) const {
+  return raster::activeTiles(*map.raster, begin, end);
+}
+
+const cl::Buffer& CompressStretchTextures::compute(const OpenMap& map, const MapBand& band) {
+  const WeightSpace& space = window_.space();
+  const WindowRows rows = cellRowsOf(band.begin, band.end, map.weight_scale, space.rows);
+  std::vector<float> weights(static_cast<std::size_t>(rows.count()) * space.rowFloats());
+  decodeRows(influences_, space, rows.begin, rows.end, weights);
+  window_.set(rows, weights, weights);
+  textures_.reserve(std::max<std::size_t>(1, band.tiles.tileCount() *
+                                                 static_cast<std::size_t>(kCompressStretchMaps * band.shape.channels) *
+                                                 kTileTexels * sizeof(float)));
+  launchCompressStretch(context_, {band.tiles, band.shape, band.differences, band.begin, map.weight_scale}, window_,
+                        gpu_, textures_.buffer());
+  return textures_.buffer();
+}
+
+void launchCompressStretch(device::DeviceContext& context, const GridBand& band, const WeightWindow& window, bool gpu,
+                           const cl::Buffer& textures) {
+  const std::size_t tiles = band.tiles.tileCount();
+  if (tiles == 0) return;
+  device::requireBytes(context, band.differences, differenceBufferBytes(band.shape, tiles), "differences of a band");
+  device::requireBytes(
+      context, textures,
+      tiles * static_cast<std::size_t>(window.space().textures * band.shape.channels) * kTileTexels * sizeof(float),
+      "compress and stretch maps");
+  const std::size_t rows = gpu ? 1 : kTileSide;
+  cl::Kernel kernel =
+      context.kernel("compress_stretch.cl", "compress_stretch",
+                     fmt::format("{} -D ROWS={}", gridDefines(band.shape, window.space(), band.weight_scale), rows));
+  const cl::Buffer* buffers[] = {&band.tiles.positions(), &band.tiles.maskWeights(), &band.differences,
+                                 &window.weightsBuffer(), &textures};
+  cl_uint argument = 0;
+  for (const cl::Buffer* buffer : buffers) kernel.setArg(argument++, *buffer);
+  kernel.setArg(argument++, static_cast<cl_int>(band.first_row));
+  kernel.setArg(argument++, static_cast<cl_int>(window.rows().begin));
+  kernel.setArg(argument++, static_cast<cl_int>(window.space().columns));
+  kernel.setArg(argument++, static_cast<cl_int>(window.space().rows));
+  const std::size_t items = kTileTexels / rows;
+  context.run(kernel, cl::NDRange(items, tiles), cl::NDRange(context.workGroupSize(kernel, items), 1));
+}
+
+}  // namespace facezip::compress

@@ -193,6 +193,35 @@ TEST_P(HalfCellsTest, GatheredEquationsEqualReference) {
   }
 }
 
+TEST_P(HalfCellsTest, BlocksStayPositiveWhereTwoTexturesShareTheirWeights) {
+  constexpr float kSmallRidge = 1e-4f;  // magnifies what rounding leaves along their difference
+  HalfCellProblem problem(GetParam());
+  const int c = problem.space_.textures;
+  if (c < 2) GTEST_SKIP() << "one texture";
+  std::vector<float> weights = problem.window_.weights();
+  const std::size_t lanes = problem.space_.lanes();
+  for (std::size_t cell = 0; cell < weights.size(); cell += problem.space_.cellFloats()) {
+    for (std::size_t n = 0; n < lanes; ++n) weights[cell + lanes + n] = weights[cell + n];
+  }
+  problem.window_.set(problem.window_.rows(), weights, weights);
+  problem.halves.fit(problem.window_, kSmallRidge);
+  const std::size_t entries =
+      device::roundUp(static_cast<std::size_t>(c * (c + 1) / 2), 16) + problem.space_.cellFloats();
+  const std::vector<float> halves =
+      readFloats(problem.halves.equations(),
+                 static_cast<std::size_t>(problem.halves.halfRows() * problem.halves.halfColumns()) * entries);
+  for (std::size_t half = 0; half < halves.size(); half += entries) {
+    Eigen::MatrixXd block(c, c);
+    for (int i = 0; i < c; ++i) {
+      for (int j = 0; j <= i; ++j) {
+        block(i, j) = block(j, i) = static_cast<double>(halves[half + static_cast<std::size_t>(i * (i + 1) / 2 + j)]);
+      }
+    }
+    const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(block).eigenvalues();
+    ASSERT_GE(values.minCoeff(), -test::kSolveRelative * values.maxCoeff()) << half / entries;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Shapes, HalfCellsTest,
                          testing::Values(GridCase{{45, 37, 3, 7, SampleType::kUint8}, 8, 4, 0, 0},
                                          GridCase{{45, 32, 3, 5, SampleType::kUint8}, 8, 4, 32, 40},

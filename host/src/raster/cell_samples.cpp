@@ -3,9 +3,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
-#include <queue>
-#include <utility>
+
+#include "raster/nearest_marked.hpp"
 
 namespace facezip::raster {
 
@@ -34,24 +35,9 @@ std::vector<TexelSample> cellSamples(const UvRaster& raster, int scale) {
 }
 
 std::vector<int> nearestSampled(const std::vector<TexelSample>& cells, int columns, int rows) {
-  std::vector<int> source(cells.size(), -1);
-  std::queue<int> front;
-  for (std::size_t c = 0; c < cells.size(); ++c) {
-    if (cells[c].triangle < 0) continue;
-    source[c] = static_cast<int>(c);
-    front.push(static_cast<int>(c));
-  }
-  for (; !front.empty(); front.pop()) {
-    const int cell = front.front(), x = cell % columns, y = cell / columns;
-    for (const auto& [nx, ny] : {std::pair{x - 1, y}, std::pair{x + 1, y}, std::pair{x, y - 1}, std::pair{x, y + 1}}) {
-      if (nx < 0 || ny < 0 || nx >= columns || ny >= rows) continue;
-      int& next = source[static_cast<std::size_t>(ny * columns + nx)];
-      if (next >= 0) continue;
-      next = source[static_cast<std::size_t>(cell)];
-      front.push(ny * columns + nx);
-    }
-  }
-  return source;
+  std::vector<std::uint8_t> sampled;
+  for (const TexelSample& cell : cells) sampled.push_back(cell.triangle >= 0);
+  return nearestMarked(sampled, columns, rows);
 }
 
 }  // namespace facezip::raster

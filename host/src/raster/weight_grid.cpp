@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <cassert>
-#include <queue>
+
+#include "raster/nearest_marked.hpp"
 
 namespace facezip::raster {
 namespace {
@@ -32,32 +33,6 @@ void appendCell(const TexelMasks& masks, const std::vector<TexelSample>& samples
     sum = 0.0f;
   }
   out.cell_begin.push_back(static_cast<int>(out.mask_index.size()));
-}
-
-/// For every cell the nearest cell (in steps along the grid, ties to the one found first in row-major order) that is
-/// covered: a breadth-first search from all of them at once. -1 where none is.
-std::vector<int> nearestCovered(const std::vector<std::uint8_t>& covered, int width, int height) {
-  std::vector<int> source(covered.size(), -1);
-  std::queue<int> front;
-  for (std::size_t c = 0; c < covered.size(); ++c) {
-    if (covered[c] == 0) continue;
-    source[c] = static_cast<int>(c);
-    front.push(static_cast<int>(c));
-  }
-  while (!front.empty()) {
-    const int cell = front.front();
-    front.pop();
-    const int x = cell % width;
-    const int y = cell / width;
-    for (const auto& [nx, ny] : {std::pair{x - 1, y}, std::pair{x + 1, y}, std::pair{x, y - 1}, std::pair{x, y + 1}}) {
-      if (nx < 0 || ny < 0 || nx >= width || ny >= height) continue;
-      int& next = source[static_cast<std::size_t>(ny * width + nx)];
-      if (next >= 0) continue;
-      next = source[static_cast<std::size_t>(cell)];
-      front.push(ny * width + nx);
-    }
-  }
-  return source;
 }
 
 /// Appends cell `column` of `row` to `out`.
@@ -93,7 +68,7 @@ WeightGrid makeWeightGrid(const TexelMasks& masks, const UvRaster& raster, int s
   }
   compress::CellMasks& out = grid.cells;
   out.cell_begin.push_back(0);
-  for (const int from : nearestCovered(grid.covered, grid.width, grid.height)) {
+  for (const int from : nearestMarked(grid.covered, grid.width, grid.height)) {
     if (from >= 0) copyCell(rows[static_cast<std::size_t>(from / grid.width)], from % grid.width, out);
     out.cell_begin.push_back(static_cast<int>(out.mask_index.size()));
   }

@@ -28,6 +28,13 @@ inline float sum_of_16(const float16 value) {
 }
 
 #ifdef EXPRESSION_LANES
+// As many texels, half cells or expressions as a work-item has at once.
+#if defined(LANES) && LANES == 1
+typedef float floats;
+#else
+typedef float16 floats;
+#endif
+
 // A symmetric C x C matrix, and the numbers of a cell in the normal equations of the weights (weight_system.cl): four
 // blocks, rounded up to 16, then the right-hand sides.
 #define PAIRS (TEXTURES * (TEXTURES + 1) / 2)
@@ -36,6 +43,42 @@ inline float sum_of_16(const float16 value) {
 // The same of a half cell (half_cell_fit.cl): one block, then the right-hand sides.
 #define SIDES_BEGIN ((PAIRS + 15) / 16 * 16)
 #define HALF_ENTRIES (SIDES_BEGIN + TEXTURES * EXPRESSION_LANES)
+
+// C x C systems in every lane, by Cholesky. factor() makes L, with 1 / its diagonal there, of a + ridge.
+#define LOWER(i, j) ((i) * ((i) + 1) / 2 + (j))  // j <= i
+
+inline void factor(floats a[PAIRS], const float ridge) {
+#pragma unroll
+  for (int i = 0; i < TEXTURES; ++i) {
+#pragma unroll
+    for (int j = 0; j <= i; ++j) {
+      floats value = a[LOWER(i, j)];
+      if (i == j) value += ridge;
+#pragma unroll
+      for (int k = 0; k < j; ++k) value -= a[LOWER(i, k)] * a[LOWER(j, k)];
+      // Rounding may leave a pivot below what was added to it; it never is.
+      a[LOWER(i, j)] = i == j ? 1.0f / sqrt(fmax(value, (floats)(ridge))) : value * a[LOWER(j, j)];
+    }
+  }
+}
+
+// x becomes L^-1 x.
+inline void substitute_forward(const floats l[PAIRS], floats x[TEXTURES]) {
+#pragma unroll
+  for (int i = 0; i < TEXTURES; ++i) {
+#pragma unroll
+    for (int j = 0; j < i; ++j) x[i] -= l[LOWER(i, j)] * x[j];
+    x[i] *= l[LOWER(i, i)];
+  }
+}
+
+// Entry i of L^-T x, where those behind it stand already.
+inline floats substitute_back(const floats l[PAIRS], const floats x[TEXTURES], const int i) {
+  floats value = x[i];
+#pragma unroll
+  for (int j = i + 1; j < TEXTURES; ++j) value -= l[LOWER(j, i)] * x[j];
+  return value * l[LOWER(i, i)];
+}
 #endif
 
 #ifdef WEIGHT_SCALE

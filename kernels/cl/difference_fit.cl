@@ -22,14 +22,12 @@
 // Sums     fixed order: expressions; rows and lanes of an item
 
 #if LANES == 1
-typedef float floats;
 typedef int ints;
 typedef DIFF_T diffs;
 #define TO_FLOATS convert_float
 #define SUM_LANES(value) (value)
 #define CELL_COLUMNS 2
 #else
-typedef float16 floats;
 typedef int16 ints;
 typedef JOIN(DIFF_T, 16) diffs;
 #define TO_FLOATS convert_float16
@@ -37,7 +35,6 @@ typedef JOIN(DIFF_T, 16) diffs;
 #define CELL_COLUMNS CELLS_OF_16
 #endif
 #define PLANE (TILE_TEXELS / LANES)  // vectors between the planes of a tile
-#define PAIR(i, j) ((i) * ((i) + 1) / 2 + (j))  // j <= i
 #define CELL_FLOATS (TEXTURES * EXPRESSION_LANES)
 
 #if LANES == 1
@@ -74,35 +71,12 @@ static void interpolate_columns(global const float* restrict cells, const floats
 
 #endif
 
-// Factors `a` + ridge in place: L below the diagonal, 1 / L on it.
-static void factor(floats a[PAIRS], const float ridge) {
-#pragma unroll
-  for (int i = 0; i < TEXTURES; ++i) {
-#pragma unroll
-    for (int j = 0; j <= i; ++j) {
-      floats value = a[PAIR(i, j)];
-      if (i == j) value += ridge;
-#pragma unroll
-      for (int k = 0; k < j; ++k) value -= a[PAIR(i, k)] * a[PAIR(j, k)];
-      // Rounding may leave a pivot below what was added to it; it never is.
-      a[PAIR(i, j)] = i == j ? 1.0f / sqrt(fmax(value, (floats)(ridge))) : value * a[PAIR(j, j)];
-    }
-  }
-}
-
 // x of L L^T x = b for one channel, in place.
 static void solve(const floats l[PAIRS], floats x[TEXTURES], global const float2* restrict encoding, const int channel) {
-#pragma unroll
-  for (int i = 0; i < TEXTURES; ++i) {
-#pragma unroll
-    for (int j = 0; j < i; ++j) x[i] -= l[PAIR(i, j)] * x[j];
-    x[i] *= l[PAIR(i, i)];
-  }
+  substitute_forward(l, x);
 #pragma unroll
   for (int i = TEXTURES - 1; i >= 0; --i) {
-#pragma unroll
-    for (int j = i + 1; j < TEXTURES; ++j) x[i] -= l[PAIR(j, i)] * x[j];
-    x[i] *= l[PAIR(i, i)];
+    x[i] = substitute_back(l, x, i);
 #ifdef CODES
     const float2 code = encoding[i * CHANNELS + channel];
     const float steps = code.x > 0.0f ? 1.0f / code.x : 0.0f;
@@ -119,9 +93,9 @@ static floats squared_error(const floats a[PAIRS], const floats b[TEXTURES][CHAN
   for (int c = 0; c < CHANNELS; ++c) {
 #pragma unroll
     for (int i = 0; i < TEXTURES; ++i) {
-      floats gradient = a[PAIR(i, i)] * d[i][c] - 2.0f * b[i][c];
+      floats gradient = a[LOWER(i, i)] * d[i][c] - 2.0f * b[i][c];
 #pragma unroll
-      for (int j = 0; j < i; ++j) gradient += 2.0f * a[PAIR(i, j)] * d[j][c];
+      for (int j = 0; j < i; ++j) gradient += 2.0f * a[LOWER(i, j)] * d[j][c];
       error += gradient * d[i][c];
     }
   }
@@ -197,7 +171,7 @@ kernel void difference_fit(global const int2* restrict tiles, global const float
 #pragma unroll
       for (int i = 0; i < TEXTURES; ++i) {
 #pragma unroll
-        for (int j = 0; j <= i; ++j) a[PAIR(i, j)] = FMA(w[i], w[j], a[PAIR(i, j)]);
+        for (int j = 0; j <= i; ++j) a[LOWER(i, j)] = FMA(w[i], w[j], a[LOWER(i, j)]);
       }
 #pragma unroll
       for (int c = 0; c < CHANNELS; ++c) {

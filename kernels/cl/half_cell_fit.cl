@@ -13,7 +13,6 @@
 // Defines  EXPRESSIONS, EXPRESSION_LANES, TEXTURES  as in difference_fit.cl
 // Sums     fixed order: expressions
 
-#define PAIR(i, j) ((i) * ((i) + 1) / 2 + (j))  // j <= i
 #define GRAM(n, m) grams[(m) * ((m) + 1) / 2 + (n)]  // n <= m
 
 // Rows become lanes: four times, the first half of the rows is woven with the second.
@@ -52,37 +51,6 @@ static void interpolate(global const float16* restrict own_row, global const flo
     transpose(values);
 #pragma unroll
     for (int k = 0; k < 16; ++k) weights[v * 16 + k] = values[k];
-  }
-}
-
-// Factors `a` + ridge in place: L below the diagonal, 1 / L on it.
-static void factor(float16 a[PAIRS], const float ridge) {
-#pragma unroll
-  for (int i = 0; i < TEXTURES; ++i) {
-#pragma unroll
-    for (int j = 0; j <= i; ++j) {
-      float16 value = a[PAIR(i, j)];
-      if (i == j) value += ridge;
-#pragma unroll
-      for (int k = 0; k < j; ++k) value -= a[PAIR(i, k)] * a[PAIR(j, k)];
-      a[PAIR(i, j)] = i == j ? 1.0f / sqrt(fmax(value, (float16)(ridge))) : value * a[PAIR(j, j)];
-    }
-  }
-}
-
-// x of L L^T x = x, in place.
-static void solve(const float16 l[PAIRS], float16 x[TEXTURES]) {
-#pragma unroll
-  for (int i = 0; i < TEXTURES; ++i) {
-#pragma unroll
-    for (int j = 0; j < i; ++j) x[i] -= l[PAIR(i, j)] * x[j];
-    x[i] *= l[PAIR(i, i)];
-  }
-#pragma unroll
-  for (int i = TEXTURES - 1; i >= 0; --i) {
-#pragma unroll
-    for (int j = i + 1; j < TEXTURES; ++j) x[i] -= l[PAIR(j, i)] * x[j];
-    x[i] *= l[PAIR(i, i)];
   }
 }
 
@@ -138,7 +106,7 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void half_cell_fit(
     for (int i = 0; i < TEXTURES; ++i) {
 #pragma unroll
       for (int j = 0; j <= i; ++j) {
-        a[PAIR(i, j)] = FMA(w[i * EXPRESSION_LANES + n], w[j * EXPRESSION_LANES + n], a[PAIR(i, j)]);
+        a[LOWER(i, j)] = FMA(w[i * EXPRESSION_LANES + n], w[j * EXPRESSION_LANES + n], a[LOWER(i, j)]);
       }
     }
   }
@@ -150,7 +118,9 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void half_cell_fit(
   for (int n = 0; n < EXPRESSIONS; ++n) {
 #pragma unroll
     for (int i = 0; i < TEXTURES; ++i) q[n][i] = w[i * EXPRESSION_LANES + n];
-    solve(l, q[n]);
+    substitute_forward(l, q[n]);
+#pragma unroll
+    for (int i = TEXTURES - 1; i >= 0; --i) q[n][i] = substitute_back(l, q[n], i);
   }
 
   // Entry e of lane k is results[e][k].
@@ -163,7 +133,7 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void half_cell_fit(
 #pragma unroll
     for (int i = 0; i < TEXTURES; ++i) {
 #pragma unroll
-      for (int j = 0; j <= i; ++j) results[PAIR(i, j)] = FMA(x[i], q[m][j], results[PAIR(i, j)]);
+      for (int j = 0; j <= i; ++j) results[LOWER(i, j)] = FMA(x[i], q[m][j], results[LOWER(i, j)]);
       results[SIDES_BEGIN + i * EXPRESSION_LANES + m] = x[i];
       error -= 2.0f * x[i] * w[i * EXPRESSION_LANES + m];
     }
@@ -171,7 +141,7 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void half_cell_fit(
 #pragma unroll
   for (int i = 0; i < TEXTURES; ++i) {
 #pragma unroll
-    for (int j = 0; j <= i; ++j) error += (i == j ? 1.0f : 2.0f) * results[PAIR(i, j)] * a[PAIR(i, j)];
+    for (int j = 0; j <= i; ++j) error += (i == j ? 1.0f : 2.0f) * results[LOWER(i, j)] * a[LOWER(i, j)];
   }
   for (int v = 0; v < HALF_ENTRIES / 16; ++v) {
     float16 entries[16];

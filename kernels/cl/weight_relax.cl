@@ -10,11 +10,6 @@
 // Defines  TEXTURES, EXPRESSION_LANES  as in difference_fit.cl
 //          LANES    expressions of a work-item: 16 on CPUs, 1 on GPUs
 
-#if LANES == 1
-typedef float floats;
-#else
-typedef float16 floats;
-#endif
 #define PAIR(i, j) ((i) > (j) ? (i) * ((i) + 1) / 2 + (j) : (j) * ((j) + 1) / 2 + (i))
 #define PLANE (EXPRESSION_LANES / LANES)
 

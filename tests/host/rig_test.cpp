@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <tiny_gltf.h>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -103,6 +104,32 @@ TEST_F(RigTest, TheGltfNamesItsTargets) {
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   for (const char* name : test::kRigShapes) EXPECT_THAT(text, testing::HasSubstr(name));
   EXPECT_THAT(text, testing::HasSubstr("albedo/neutral.png"));
+}
+
+TEST_F(RigTest, ThePackagesMeshIsPosedByExpressionsAndShapes) {
+  const Package packed = Package::open(package());
+  tinygltf::Model model;
+  std::string error, warning;
+  const std::string file = (package() / packed.description().mesh_file).string();
+  ASSERT_TRUE(tinygltf::TinyGLTF().LoadBinaryFromFile(&model, &error, &warning, file)) << error;
+  const tinygltf::Value names = model.meshes.at(0).extras.Get("targetNames");
+  std::vector<std::string> targets;
+  for (std::size_t t = 0; t < names.ArrayLen(); ++t)
+    targets.push_back(names.Get(static_cast<int>(t)).Get<std::string>());
+  EXPECT_EQ(targets, packed.expressions());
+  // Shapes move it as far as they move shapes/NAME.obj.
+  const geometry::TriangleMesh neutral = geometry::readObj(package() / "shapes/neutral.obj");
+  const tinygltf::Primitive& primitive = model.meshes[0].primitives.at(0);
+  for (std::size_t m = 0; m < 3; ++m) {
+    const geometry::TriangleMesh shape =
+        geometry::readObj(package() / "shapes" / (std::string(test::kRigShapes[m]) + ".obj"));
+    const tinygltf::Accessor& moved =
+        model.accessors.at(static_cast<std::size_t>(primitive.targets.at(4 + m).at("POSITION")));
+    const Eigen::RowVector3d most = (shape.positions - neutral.positions).colwise().maxCoeff();
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_NEAR(moved.maxValues.at(c), std::max(most(static_cast<Eigen::Index>(c)), 0.0), 1e-5) << m;
+    }
+  }
 }
 
 TEST_F(RigTest, IsEvaluatedByItsOwnNamesAndThroughTheShapes) {

@@ -1,5 +1,5 @@
 // The page of `facezip view` in Chromium: node view_test.mjs FACEZIP CHROMIUM PACKAGES WORK_DIRECTORY
-// PACKAGES holds what make_packages.cmake made: head, bare (no mesh, no normals) and many (100 expressions).
+// PACKAGES holds what make_packages.cmake made: head, bare (no mesh, no normals), many (100 expressions) and rig.
 // Screenshots stay in WORK_DIRECTORY.
 import assert from 'node:assert/strict';
 import { execFileSync, spawn, spawnSync } from 'node:child_process';
@@ -7,8 +7,7 @@ import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node
 import { createServer } from 'node:net';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
-import { decode } from 'fast-png';
-import { chromium } from 'playwright-core';
+import { blendDifference, changedShare, launch, openPage, results, run } from './common.mjs';
 
 const [facezip, browserPath, packages, work] = process.argv.slice(2);
 const packagePath = join(packages, 'head');
@@ -28,63 +27,24 @@ async function serve(path) {
   return { url: line.match(/http:\S+/)[0], stop: () => server.kill('SIGINT') };
 }
 
-/** Opens a page and waits until it shows the package, or its message; console errors are kept in page.errors. */
-async function open(browser, url, ready = true) {
-  const page = await browser.newPage({ viewport: { width: 900, height: 640 } });
-  page.errors = [];
-  page.on('console', (message) => { if (message.type() === 'error') page.errors.push(message.text()); });
-  page.on('pageerror', (error) => page.errors.push(String(error)));
-  page.on('request', (request) => {
-    const { protocol, hostname } = new URL(request.url());
-    const local = protocol === 'data:' || protocol === 'blob:' || protocol === 'file:' || hostname === '127.0.0.1';
-    if (!local) page.errors.push(`loads ${request.url()}`);
-  });
-  await page.goto(url);
-  if (ready) await page.evaluate(() => globalThis.facezip.ready);
+/** Opens a page and waits until it shows the package. */
+async function open(browser, url) {
+  const page = await openPage(browser, url);
+  await page.evaluate(() => globalThis.facezip.ready);
   return page;
 }
 
-/** Largest difference of what the shader computes to what `facezip blend` writes, per map, in 1/255. */
-async function blendDifference(page, weights, gain) {
-  const pattern = join(work, 'blend', '{map}.png');
-  const given = Object.entries(weights).map(([name, weight]) => `${name}=${weight}`).join(',');
-  execFileSync(facezip, ['blend', packagePath, '--weights', given, '--output', pattern, ...gain]);
-  let largest = 0;
-  for (const [index, map] of description.maps.entries()) {
-    const expected = decode(readFileSync(pattern.replace('{map}', map.name)));
-    const baked = Buffer.from(await page.evaluate(([beta, i]) => {
-      globalThis.facezip.setWeights(beta);
-      // As text: an array of a million numbers takes minutes to come over.
-      return Array.from(globalThis.facezip.bake(i), (byte) => String.fromCharCode(byte)).join('');
-    }, [weights, index]), 'latin1');
-    assert.equal(baked.length, 4 * map.width * map.height);
-    const most = map.sample_type === '16-bit' ? 65535 : 255;
-    for (let p = 0; p < map.width * map.height; ++p) {
-      for (let c = 0; c < Math.min(map.channels, 3); ++c) {
-        const wanted = (expected.data[p * expected.channels + c] * 255) / most;
-        largest = Math.max(largest, Math.abs(wanted - baked[4 * p + c]));
-      }
-    }
-  }
-  return largest;
-}
+const bake = (page, weights, index) => page.evaluate(([beta, i]) => {
+  globalThis.facezip.setWeights(beta);
+  // As text: an array of a million numbers takes minutes to come over.
+  return Array.from(globalThis.facezip.bake(i), (byte) => String.fromCharCode(byte)).join('');
+}, [weights, index]);
+const difference = (page, weights, gain) =>
+  blendDifference({ facezip, packagePath, description, work }, page, bake, weights, gain);
 
 async function screenshot(page, name) {
   await page.waitForFunction(() => globalThis.facezip.settled);
   return page.screenshot({ path: join(work, `${name}.png`) });
-}
-
-/** Share of pixels left of the panel that differ. */
-function changedShare(before, after) {
-  const [a, b] = [decode(before), decode(after)];
-  let changed = 0, count = 0;
-  for (let y = 0; y < a.height - 40; ++y) {
-    for (let x = 0; x < a.width - 330; ++x, ++count) {
-      const i = (y * a.width + x) * a.channels;
-      if (Math.abs(a.data[i] - b.data[i]) + Math.abs(a.data[i + 1] - b.data[i + 1]) > 8) ++changed;
-    }
-  }
-  return changed / count;
 }
 
 async function moveSlider(page, parent, name, value) {
@@ -112,7 +72,7 @@ const tests = {
     const vectors = [{}, { [names[0]]: 1 }, { [names[1]]: 0.37, [names[3]]: 0.8 },
       Object.fromEntries(names.map((name, n) => [name, ((n * 37) % 100) / 250]))];
     for (const weights of vectors) {
-      const largest = await blendDifference(page, weights, []);
+      const largest = await difference(page, weights);
       console.log(`  largest difference ${largest}/255 at ${JSON.stringify(weights).slice(0, 60)}`);
       assert.ok(largest <= 1.5, `${largest}/255`);
       if (Object.keys(weights).length === 0) assert.equal(largest, 0);
@@ -129,11 +89,11 @@ const tests = {
     const saved = JSON.parse(readFileSync(preset));
     assert.equal(saved.expressions[names[0]], 1.8);
     assert.equal(saved.regions[regions[1]], 0.25);
-    const largest = await blendDifference(page, { [names[0]]: 0.5, [names[2]]: 0.9 }, ['--gain', preset]);
+    const largest = await difference(page, { [names[0]]: 0.5, [names[2]]: 0.9 }, ['--gain', preset]);
     console.log(`  largest difference with gains ${largest}/255`);
     assert.ok(largest <= 1.5, `${largest}/255`);
     await page.click('#reset');
-    assert.ok(await blendDifference(page, { [names[0]]: 0.5, [names[2]]: 0.9 }, ['--gain', preset]) > 4);
+    assert.ok(await difference(page, { [names[0]]: 0.5, [names[2]]: 0.9 }, ['--gain', preset]) > 4);
     await page.setInputFiles('#load', preset);
     await page.waitForFunction(() => document.getElementById('note').textContent.includes('in force'));
     assert.deepEqual(await page.evaluate(() => globalThis.facezip.preset), saved);
@@ -177,20 +137,7 @@ const tests = {
   },
 };
 
-// Software rendering: no machine that runs tests needs a GPU.
-const browser = await chromium.launch({ executablePath: browserPath,
-  args: ['--no-sandbox', '--use-angle=swiftshader', '--use-gl=angle', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'] });
-let failed = 0;
-async function run(name, body) {
-  try {
-    await body();
-    console.log(`ok   ${name}`);
-  } catch (error) {
-    ++failed;
-    console.log(`FAIL ${name}\n${error.stack}`);
-  }
-}
-
+const browser = await launch(browserPath);
 const server = await serve(packagePath);
 const page = await open(browser, server.url);
 for (const [name, body] of Object.entries(tests)) await run(name, () => body(page));
@@ -243,6 +190,24 @@ await run('100 expressions', async () => {
   await crowd.close();
   many.stop();
 });
+await run('a rig is posed by its shapes, mesh and textures', async () => {
+  const rig = await serve(join(packages, 'rig'));
+  const posed = await open(browser, rig.url);
+  const shapes = await posed.evaluate(() => globalThis.facezip.expressions.length - globalThis.facezip.morphs.length);
+  assert.equal(shapes, 0, 'expressions without a morph target');
+  const name = 'browInnerUp';
+  for (const [mode, flat] of [['neutral', false], ['texture', true]]) {  // mesh alone, texture alone
+    await posed.selectOption('#mode', mode);
+    await posed.setChecked('#flat', flat);
+    await moveSlider(posed, '#expressions', name, 0);
+    const before = await screenshot(posed, `rig_${mode}`);
+    await moveSlider(posed, '#expressions', name, 1);
+    assert.ok(changedShare(before, await screenshot(posed, `rig_${mode}_moved`)) > 0.005, mode);
+  }
+  assert.deepEqual(posed.errors, []);
+  await posed.close();
+  rig.stop();
+});
 await run('bad input gets one clear error', async () => {
   const fails = (code, wanted, ...args) => {
     const { status, stderr } = spawnSync(facezip, args, { encoding: 'utf8' });
@@ -269,7 +234,7 @@ await run('bad input gets one clear error', async () => {
 });
 
 await run('the report shows plots, pictures and sliders without a network', async () => {
-  const report = await open(browser, pathToFileURL(join(packages, 'report.html')).href, false);
+  const report = await openPage(browser, pathToFileURL(join(packages, 'report.html')).href);
   assert.ok(await report.locator('svg.plot path').count() > 8);
   const images = await report.locator('img').evaluateAll((all) => all.map((image) => image.naturalWidth));
   assert.ok(images.length > 3 * names.length && images.every((width) => width > 0), `${images}`);
@@ -285,4 +250,4 @@ await run('the report shows plots, pictures and sliders without a network', asyn
   await report.close();
 });
 await browser.close();
-process.exit(failed ? 1 : 0);
+process.exit(results.failed ? 1 : 0);

@@ -178,6 +178,9 @@ class Rigging {
     const Package package = Package::open(staged_.path());
     writeFace(staged_.path(), face, report_.shapes, capture_.name, geometry::metresPerUnit(subject_.unit),
               package.maps());
+    if (options_.compress.mesh) {
+      writePackageMesh(staged_.path(), subject_, rig_, report_.package_expressions, report_.shapes, capture_.name);
+    }
     io::writeTextFile(staged_.path() / kRigFile, rigJson(report_, subject_.millimetresPerUnit()));
     clock_.book("writing shapes");
   }

@@ -11,6 +11,7 @@
 #include "facezip/geometry/part_transfer.hpp"
 #include "facezip/package.hpp"
 #include "io/staged_directory.hpp"
+#include "package/guides.hpp"
 
 namespace facezip::rig {
 namespace {
@@ -116,6 +117,22 @@ void writeFace(const std::filesystem::path& directory, const RigFace& face, cons
   scene.base_colour_texture = neutralOf(maps, {"albedo", "diffuse", "basecolor", "base_color", "color", "colour"});
   scene.normal_texture = neutralOf(maps, {"normal", "normals"});
   exporting::writeGltf(directory / "rig.gltf", scene);
+}
+
+void writePackageMesh(const std::filesystem::path& directory, const RigSubject& subject,
+                      const geometry::ExampleRig& rig, const std::vector<std::string>& expressions,
+                      const std::vector<std::string>& shapes, const std::string& title) {
+  exporting::GltfScene scene;
+  scene.name = title.empty() ? "face" : title;
+  scene.neutral = subject.neutral;
+  scene.metres_per_unit = geometry::metresPerUnit(subject.unit);
+  for (std::size_t n = 0; n < expressions.size(); ++n) {
+    scene.targets.push_back({expressions[n], subject.expressions[n]});
+  }
+  for (std::size_t m = 0; m < shapes.size(); ++m) {
+    scene.targets.push_back({shapes[m], subject.neutral.positions + rig.shapes[m]});
+  }
+  exporting::writeGltf(directory / package::kMeshFile, scene);
 }
 
 }  // namespace facezip::rig

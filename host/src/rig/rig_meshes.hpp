@@ -41,4 +41,10 @@ RigFace assembleFace(const RigSubject& subject, const RigTemplate& rig_template,
 void writeFace(const std::filesystem::path& directory, const RigFace& face, const std::vector<std::string>& names,
                const std::string& title, double metres_per_unit, const std::vector<PackageMap>& maps);
 
+/// Writes the package's mesh.glb anew: the subject's skin, posed by each of its expressions and then by each shape.
+/// expressions, shapes  N + M names, as the package has them
+void writePackageMesh(const std::filesystem::path& directory, const RigSubject& subject,
+                      const geometry::ExampleRig& rig, const std::vector<std::string>& expressions,
+                      const std::vector<std::string>& shapes, const std::string& title);
+
 }  // namespace facezip::rig

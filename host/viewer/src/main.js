@@ -238,6 +238,7 @@ const viewer = new Viewer();
 globalThis.facezip = {
   ready: viewer.load().then(() => viewer.run()),
   get expressions() { return viewer.names; },
+  get morphs() { return viewer.morphs; },
   setWeights: (byName) => viewer.setWeights(byName),
   setPreset: (text) => viewer.setGains(fromPreset(viewer.description, text)),
   get preset() { return viewer.preset(); },

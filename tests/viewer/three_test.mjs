@@ -1,0 +1,85 @@
+// The folder of `facezip export --target three` in a page of somebody's own: node three_test.mjs FACEZIP CHROMIUM PACKAGES WORK_DIRECTORY
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { mkdirSync, readFileSync, rmSync } from 'node:fs';
+import { createServer } from 'node:http';
+import { dirname, extname, join, normalize } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { blendDifference, changedShare, launch, openPage, results, run } from './common.mjs';
+
+const [facezip, browserPath, packages, work] = process.argv.slice(2);
+const packagePath = join(packages, 'head');
+const description = JSON.parse(readFileSync(join(packagePath, 'package.json')));
+const names = description.expressions;
+rmSync(work, { recursive: true, force: true });
+mkdirSync(work, { recursive: true });
+execFileSync(facezip, ['export', packagePath, '--target', 'three', '--output', join(work, 'face')]);
+
+// As the README says, with a renderer, a camera and a light of the page's.
+const pageText = `<!doctype html><meta charset="utf-8"><link rel="icon" href="data:,"><body style="margin:0">
+<script type="importmap">{"imports": {"three": "/three/build/three.module.js", "three/": "/three/"}}</script>
+<script type="module">
+  import * as THREE from 'three';
+  import { loadFace } from '/face/facezip_three.js';
+  const renderer = new THREE.WebGLRenderer({ preserveDrawingBuffer: true });
+  renderer.setSize(640, 480);
+  document.body.append(renderer.domElement);
+  const scene = new THREE.Scene();
+  scene.add(new THREE.HemisphereLight(0xffffff, 0x555555, 2));
+  const start = async () => {
+    const face = await loadFace(renderer, '/face/');
+    scene.add(face.object);
+    face.object.geometry.computeBoundingSphere();
+    const { center, radius } = face.object.geometry.boundingSphere;
+    const camera = new THREE.PerspectiveCamera(30, 640 / 480, radius / 100, 100 * radius);
+    camera.position.set(center.x, center.y, center.z + 4 * radius);
+    globalThis.draw = (weights) => { face.setWeights(weights); renderer.render(scene, camera); };
+    globalThis.bake = (weights, map) => {
+      face.setWeights(weights);
+      return Array.from(face.textures.bake(renderer, map), (byte) => String.fromCharCode(byte)).join('');
+    };
+    globalThis.face = face;
+  };
+  globalThis.ready = start();
+</script>`;
+const types = { '.js': 'text/javascript', '.png': 'image/png', '.json': 'application/json' };
+const three = dirname(dirname(fileURLToPath(import.meta.resolve('three'))));
+const server = createServer((request, response) => {
+  const path = normalize(decodeURIComponent(new URL(request.url, 'http://x').pathname));
+  if (path === '/') return response.setHeader('content-type', 'text/html').end(pageText);
+  try {
+    const file = path.startsWith('/three/') ? join(three, path.slice(7)) : join(work, path);
+    response.setHeader('content-type', types[extname(file)] ?? 'application/octet-stream').end(readFileSync(file));
+  } catch {
+    response.writeHead(404).end();
+  }
+});
+await new Promise((listening) => server.listen(0, '127.0.0.1', listening));
+const browser = await launch(browserPath);
+const page = await openPage(browser, `http://127.0.0.1:${server.address().port}/`);
+const shoot = async (weights, name) => {
+  await page.evaluate((given) => globalThis.draw(given), weights);
+  return page.screenshot({ path: join(work, `${name}.png`) });
+};
+
+await run('the module loads with the page\'s three.js', async () => {
+  await page.evaluate(() => globalThis.ready);
+  assert.deepEqual(await page.evaluate(() => globalThis.face.expressions), names);
+});
+await run('the shader computes what facezip blend does', async () => {
+  const bake = (from, weights, map) => from.evaluate(([given, i]) => globalThis.bake(given, i), [weights, map]);
+  for (const weights of [{}, { [names[0]]: 1 }, { [names[1]]: 0.37, [names[3]]: 0.8 }]) {
+    const largest = await blendDifference({ facezip, packagePath, description, work }, page, bake, weights);
+    console.log(`  largest difference ${largest}/255 at ${JSON.stringify(weights)}`);
+    assert.ok(largest <= (Object.keys(weights).length ? 1.5 : 0), `${largest}/255`);
+  }
+});
+await run('weights move the face', async () => {
+  const neutral = await shoot({}, 'neutral');
+  assert.ok(changedShare(neutral, await shoot({ [names[0]]: 1 }, 'expression'), 0) > 0.005);
+  assert.equal(changedShare(neutral, await shoot({}, 'neutral_again'), 0), 0);
+});
+await run('no console errors', () => assert.deepEqual(page.errors, []));
+await browser.close();
+server.close();
+process.exit(results.failed ? 1 : 0);

@@ -10,8 +10,9 @@ if(FACEZIP_WARNINGS_AS_ERRORS)
   target_compile_options(facezip_compile_options INTERFACE -Werror)
 endif()
 # A module that misses a symbol fails when it is linked, not when it is loaded; sanitized ones leave theirs to the program.
-set(FACEZIP_MODULE_LINK_OPTIONS $<$<NOT:$<BOOL:${FACEZIP_SANITIZE}>>:-Wl,-z,defs>)
+set(FACEZIP_MODULE_LINK_OPTIONS -Wl,-z,defs)
 if(FACEZIP_SANITIZE)
+  set(FACEZIP_MODULE_LINK_OPTIONS)
   # The sanitizers' own instructions set off this warning in the standard library (GCC bug 105562).
   target_compile_options(facezip_compile_options INTERFACE -Wno-maybe-uninitialized)
   # Global, not per target: a library built without them would hide the reads of one built with.

@@ -6,12 +6,14 @@
 #include <fmt/format.h>
 #include <tiny_obj_loader.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -22,7 +24,9 @@
 namespace facezip::geometry {
 namespace {
 
-constexpr std::string_view kBlank = " \t";
+bool isBlank(char c) { return c == ' ' || c == '\t'; }
+bool endsLine(char c) { return c == '\n' || c == '\r'; }
+
 // tinyobjloader counts the corners of a face in a byte.
 constexpr int kMostCorners = 255;
 
@@ -46,19 +50,18 @@ std::string readText(const std::filesystem::path& file) {
   if (!stream) {
     throw InputError({file.string(), "", "an OBJ file", std::system_category().message(errno), "check the path"});
   }
-  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  std::ostringstream text;
+  text << stream.rdbuf();
   if (stream.bad()) throw InputError({file.string(), "", "an OBJ file", "a file that cannot be read to its end", ""});
-  return text;
+  return std::move(text).str();
 }
 
 // Takes the next word off the line; empty at its end.
 std::string_view nextWord(std::string_view& line) {
-  const std::size_t begin = line.find_first_not_of(kBlank);
-  if (begin == std::string_view::npos) return line = {};
-  const std::size_t end = std::min(line.find_first_of(kBlank, begin), line.size());
-  const std::string_view word = line.substr(begin, end - begin);
-  line.remove_prefix(end);
-  return word;
+  const char* const begin = std::find_if_not(line.begin(), line.end(), isBlank);
+  const char* const end = std::find_if(begin, line.end(), isBlank);
+  line = {end, line.end()};
+  return {begin, end};
 }
 
 // A decimal number as tinyobjloader understands it; whether it is finite shows after reading.
@@ -108,8 +111,8 @@ void scanFace(const std::filesystem::path& file, int line_number, std::string_vi
 ObjLines scanLines(const std::filesystem::path& file, std::string_view text) {
   ObjLines lines;
   for (int number = 1; !text.empty(); ++number) {
-    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
-    std::string_view rest = text.substr(0, end);
+    const char* const end = std::find_if(text.begin(), text.end(), endsLine);
+    std::string_view rest(text.begin(), end);
     const std::string_view keyword = nextWord(rest);
     if (keyword == "v") {
       checkNumbers(file, number, rest, 3);
@@ -120,7 +123,7 @@ ObjLines scanLines(const std::filesystem::path& file, std::string_view text) {
     } else if (keyword == "f") {
       scanFace(file, number, rest, lines);
     }
-    text.remove_prefix(end);
+    text = {end, text.end()};
     text.remove_prefix(text.starts_with("\r\n") ? 2 : text.empty() ? 0 : 1);
   }
   if (lines.vertices.empty()) throw InputError({file.string(), "", "an OBJ mesh", "no vertices", ""});

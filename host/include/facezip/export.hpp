@@ -9,13 +9,13 @@
 
 namespace facezip {
 
-/// Names of the targets: "gltf", "three", "blender".
+/// Names of the targets: "blender", "gltf", "godot", "three".
 std::vector<std::string> exportTargets();
 
-/// Writes a folder: `scene.gltf` with `scene.bin` (the mesh with morph targets, the neutral textures as material, the
-/// blend as extras), `package` (a copy), the target's script, and README.md for the person who drops it in. It appears
-/// whole or not at all; a folder that was exported before is replaced. Throws InputError for an unknown target and a
-/// package without a mesh; OutputError.
+/// Writes a folder: `scene.gltf` with `scene.bin` (the mesh with morph targets), `package` (a copy) or `textures` as
+/// engines take them, the blend in the target's language, and README.md for the person who drops it in: docs/export.md.
+/// It appears whole or not at all; a folder that was exported before is replaced. Throws InputError for an unknown
+/// target, a package without a mesh, and, of engines, one with maps of floats alone; OutputError.
 void exportPackage(const Package& package, const std::string& target, const std::filesystem::path& output);
 
 }  // namespace facezip

@@ -2,15 +2,15 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <tiny_gltf.h>
 
-#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "export/engine_maps.hpp"
 #include "export/export_files.hpp"
 #include "export/gltf_scene.hpp"
+#include "export/godot.hpp"
 #include "facezip/view.hpp"
 #include "io/staged_directory.hpp"
 #include "package/package_json.hpp"
@@ -19,13 +19,28 @@ namespace facezip {
 namespace fs = std::filesystem;
 namespace {
 
-/// What a target gets beside scene.gltf and the package: names of embedded files. The first is its README.
-const std::map<std::string, std::vector<std::string>>& targets() {
-  static const std::map<std::string, std::vector<std::string>> files = {
-      {"gltf", {"gltf.md", "facezip_blend.h"}},
-      {"three", {"three.md", "facezip_three.js"}},
-      {"blender", {"blender.md", "facezip_blender.py"}}};
-  return files;
+/// Textures that the material of scene.gltf refers to.
+enum class Textures {
+  kPackage,  ///< the package's copy, with the blend as extras
+  kOwn,      ///< those that engines get
+  kNone      ///< the target has a material of its own
+};
+
+/// What a target gets beside scene.gltf: names of embedded files, the first its README, and what `write` makes of the
+/// package; without it, a copy.
+struct Target {
+  std::vector<std::string> files;
+  Textures textures = Textures::kPackage;
+  void (*write)(const Package& package, const fs::path& folder) = nullptr;
+};
+
+const std::map<std::string, Target>& targets() {
+  static const std::map<std::string, Target> all = {
+      {"gltf", {{"gltf.md", "facezip_blend.h"}}},
+      {"three", {{"three.md", "facezip_three.js"}}},
+      {"blender", {{"blender.md", "facezip_blender.py"}}},
+      {"godot", {{"godot.md", "facezip_face.gd", "demo.gd"}, Textures::kNone, exporting::writeGodot}}};
+  return all;
 }
 
 void copyPackage(const Package& package, const fs::path& folder) {
@@ -46,28 +61,32 @@ nlohmann::json blendExtras(const PackageDescription& description) {
   return {{"facezip", blend}};
 }
 
-/// Path of a neutral that glTF takes as texture: PNG, of a map with `part` in its name; "" if there is none.
-std::string neutralTexture(const Package& package, std::string_view part) {
-  for (const PackageMap& map : package.maps()) {
-    std::string name = map.name;
-    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (name.find(part) == std::string::npos || !map.neutral_file.ends_with(".png")) continue;
-    return "package/" + map.neutral_file;
+/// The material of scene.gltf, for tools that know nothing of facezip: plain neutrals.
+exporting::GltfMaterial plainMaterial(const Package& package, Textures textures) {
+  exporting::GltfMaterial material;
+  if (textures == Textures::kNone) return material;
+  const bool own = textures == Textures::kOwn;
+  for (const exporting::EngineMap& map : exporting::engineMaps(package)) {
+    if (!own && !map.map.neutral_file.ends_with(".png")) continue;
+    const std::string file = own ? "textures/" + map.id + "_neutral.png" : "package/" + map.map.neutral_file;
+    if (map.role == exporting::MapRole::kAlbedo) material.base_colour_texture = file;
+    if (map.role == exporting::MapRole::kNormal) material.normal_texture = file;
   }
-  return "";
+  if (!own) material.extras = blendExtras(package.description());
+  return material;
 }
 
 }  // namespace
 
 std::vector<std::string> exportTargets() {
   std::vector<std::string> names;
-  for (const auto& [name, files] : targets()) names.push_back(name);
+  for (const auto& [name, made] : targets()) names.push_back(name);
   return names;
 }
 
 void exportPackage(const Package& package, const std::string& target, const fs::path& output) {
-  const auto files = targets().find(target);
-  if (files == targets().end()) {
+  const auto found = targets().find(target);
+  if (found == targets().end()) {
     throw InputError({"--target", "", fmt::format("{}", fmt::join(exportTargets(), ", ")), target, ""});
   }
   const PackageDescription& description = package.description();
@@ -76,11 +95,15 @@ void exportPackage(const Package& package, const std::string& target, const fs::
                       "compress the capture again, without --no-mesh"});
   }
   io::StagedDirectory staged(output, io::StagedDirectory::Existing::kReplaceMarked, "scene.gltf");
-  copyPackage(package, staged.path() / "package");
-  exporting::addBlendToGltf(
-      package.directory() / description.mesh_file, staged.path() / "scene.gltf",
-      {neutralTexture(package, "albedo"), neutralTexture(package, "normal"), blendExtras(description)});
-  for (const std::string& file : files->second) {
+  const Target& chosen = found->second;
+  if (chosen.write != nullptr) {
+    chosen.write(package, staged.path());
+  } else {
+    copyPackage(package, staged.path() / "package");
+  }
+  exporting::addBlendToGltf(package.directory() / description.mesh_file, staged.path() / "scene.gltf",
+                            plainMaterial(package, chosen.textures));
+  for (const std::string& file : chosen.files) {
     const std::string name = file.ends_with(".md") ? "README.md" : file;
     io::writeTextFile(staged.path() / name, std::string(exporting::embeddedExportFiles().at(file)));
   }

@@ -1,0 +1,191 @@
+#include "export/engine_maps.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstring>
+#include <set>
+#include <string_view>
+
+#include "image/image_file.hpp"
+#include "package/package_json.hpp"
+
+namespace facezip::exporting {
+namespace fs = std::filesystem;
+namespace {
+
+std::string lowerCase(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+/// Letters, digits and single underscores, a letter first: what GLSL, HLSL and C# take.
+std::string identifier(const std::string& name, const std::set<std::string>& taken) {
+  std::string id;
+  for (const char c : name) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 && static_cast<unsigned char>(c) < 128;
+    if (plain) id += c;
+    if (!plain && !id.empty() && id.back() != '_') id += '_';
+  }
+  while (!id.empty() && id.back() == '_') id.pop_back();
+  if (id.empty() || std::isalpha(static_cast<unsigned char>(id[0])) == 0) id = id.empty() ? "map" : "map_" + id;
+  std::string unique = id;
+  for (int i = 2; taken.contains(unique); ++i) unique = fmt::format("{}_{}", id, i);
+  return unique;
+}
+
+MapRole roleOf(const std::string& name, const std::vector<EngineMap>& before) {
+  static constexpr std::pair<std::string_view, MapRole> kParts[] = {{"albedo", MapRole::kAlbedo},
+                                                                    {"diffuse", MapRole::kAlbedo},
+                                                                    {"normal", MapRole::kNormal},
+                                                                    {"roughness", MapRole::kRoughness}};
+  const std::string lower = lowerCase(name);
+  for (const auto& [part, role] : kParts) {
+    if (lower.find(part) == std::string::npos) continue;
+    const bool taken = std::ranges::any_of(before, [&](const EngineMap& map) { return map.role == role; });
+    return taken ? MapRole::kOther : role;
+  }
+  return MapRole::kOther;
+}
+
+/// Codes of 16 bits are exported as the nearest of 8, zero as the nearest too: nothing then stays nothing.
+EngineDifference engineDifference(const PackageMap& map, const PackageDifference& difference) {
+  const double step = map.difference_bits == 16 ? 257.0 : 1.0;
+  EngineDifference engine;
+  for (std::size_t c = 0; c < difference.scale.size(); ++c) {
+    const double scale = difference.scale[c];
+    if (scale == 0.0) continue;
+    engine.zero[c] = std::round(-difference.offset[c] / scale / step) / 255.0;
+    engine.scale[c] = scale * step;  // times 255 codes, over 255 for units of full scale
+  }
+  return engine;
+}
+
+image::Image readBytes(const fs::path& file) {
+  image::Image image = image::readImage(file);
+  if (image.shape.type != SampleType::kUint16) return image;
+  const std::size_t count = image.samples.size() / 2;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::uint16_t code = 0;
+    std::memcpy(&code, image.samples.data() + 2 * i, 2);
+    image.samples[i] = static_cast<std::byte>((code + 128u) / 257u);
+  }
+  image.samples.resize(count);
+  image.shape.type = SampleType::kUint8;
+  return image;
+}
+
+}  // namespace
+
+std::vector<EngineMap> engineMaps(const Package& package) {
+  std::vector<EngineMap> maps;
+  std::set<std::string> taken;
+  for (const PackageMap& map : package.maps()) {
+    if (map.sample_type == SampleType::kFloat32) continue;
+    EngineMap engine{identifier(map.name, taken), map, roleOf(map.name, maps), {}};
+    taken.insert(engine.id);
+    for (const PackageDifference& difference : map.differences) {
+      engine.differences.push_back(engineDifference(map, difference));
+    }
+    maps.push_back(std::move(engine));
+  }
+  return maps;
+}
+
+void requireMaps(const Package& package, const std::vector<EngineMap>& maps) {
+  if (!maps.empty()) return;
+  throw InputError({package.directory().string(), "maps", "one of 8 or 16 bits", "floats alone",
+                    "compress a capture with textures of integers"});
+}
+
+void writeNeutral(const Package& package, const EngineMap& map, const fs::path& folder) {
+  image::writeImage(folder / (map.id + "_neutral.png"), readBytes(package.directory() / map.map.neutral_file));
+}
+
+void writeDifferences(const Package& package, const EngineMap& map, const fs::path& folder) {
+  for (std::size_t i = 0; i < map.map.differences.size(); ++i) {
+    image::writeImage(folder / fmt::format("{}_difference_{}.png", map.id, i),
+                      readBytes(package.directory() / map.map.differences[i].file));
+  }
+}
+
+StackLayout stackLayout(const Package& package, const EngineMap& map) {
+  const int count = static_cast<int>(map.map.differences.size());
+  for (int columns = 1; columns <= count; ++columns) {
+    const int rows = (count + columns - 1) / columns;
+    if (rows * map.map.height <= package::kMaxAtlasSide && columns * map.map.width <= package::kMaxAtlasSide) {
+      return {columns, rows};
+    }
+  }
+  throw InputError({package.directory().string(), map.map.name,
+                    fmt::format("{} difference textures that fit into one image of {} x {}", count,
+                                package::kMaxAtlasSide, package::kMaxAtlasSide),
+                    fmt::format("{} x {} texels each", map.map.width, map.map.height),
+                    "compress smaller textures, or with fewer --differences"});
+}
+
+void writeStack(const Package& package, const EngineMap& map, const fs::path& folder) {
+  const StackLayout layout = stackLayout(package, map);
+  image::ImageShape shape{layout.columns * map.map.width, layout.rows * map.map.height, map.map.channels,
+                          SampleType::kUint8};
+  image::Image stack{shape, std::vector<std::byte>(shape.rowBytes() * static_cast<std::size_t>(shape.height))};
+  for (std::size_t i = 0; i < map.map.differences.size(); ++i) {
+    const image::Image one = readBytes(package.directory() / map.map.differences[i].file);
+    const std::size_t row_bytes = one.shape.rowBytes();
+    const auto columns = static_cast<std::size_t>(layout.columns);
+    const auto height = static_cast<std::size_t>(one.shape.height);
+    for (std::size_t y = 0; y < height; ++y) {
+      const std::size_t to = (i / columns * height + y) * shape.rowBytes() + i % columns * row_bytes;
+      std::memcpy(stack.samples.data() + to, one.samples.data() + y * row_bytes, row_bytes);
+    }
+  }
+  image::writeImage(folder / (map.id + "_differences.png"), stack);
+}
+
+std::vector<int> usedSets(const std::vector<EngineMap>& maps) {
+  std::set<int> sets;
+  for (const EngineMap& map : maps) sets.insert(map.map.weight_set);
+  return {sets.begin(), sets.end()};
+}
+
+void writeWeights(const Package& package, const std::vector<EngineMap>& maps, const fs::path& folder) {
+  for (const int set : usedSets(maps)) {
+    const std::vector<std::string>& files = package.weightSets()[static_cast<std::size_t>(set)].files;
+    for (std::size_t f = 0; f < files.size(); ++f) {
+      image::writeImage(folder / fmt::format("weights_{}_{}.png", set, f),
+                        image::readImage(package.directory() / files[f]));
+    }
+  }
+}
+
+std::string literal(double value) {
+  std::string text = fmt::format("{:.12f}", value);  // no exponents: not every shading language has them
+  while (text.ends_with('0') && !text.ends_with(".0")) text.pop_back();
+  return text;
+}
+
+std::string literal(const std::string& type, const std::array<double, 4>& values) {
+  return fmt::format("{}({}, {}, {}, {})", type, literal(values[0]), literal(values[1]), literal(values[2]),
+                     literal(values[3]));
+}
+
+std::array<double, 4> fourOf(const std::vector<double>& values, std::size_t file) {
+  std::array<double, 4> four{};
+  for (std::size_t c = 0; c < 4 && 4 * file + c < values.size(); ++c) four[c] = values[4 * file + c];
+  return four;
+}
+
+std::string swizzled(const std::string& type, const std::string& sample, int channels) {
+  switch (channels) {
+    case 1:
+      return fmt::format("{}({}.r, 0.0, 0.0, 0.0)", type, sample);
+    case 2:
+      return fmt::format("{}({}.ra, 0.0, 0.0)", type, sample);
+    default:
+      return sample;
+  }
+}
+
+}  // namespace facezip::exporting

@@ -1,0 +1,69 @@
+// engine_maps.hpp - a package as game engines take it: plain textures of 8 bits, and the numbers of the blend as
+// literals.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "facezip/package.hpp"
+
+namespace facezip::exporting {
+
+/// What a map is in a physical material; the first map of a role has it.
+enum class MapRole { kAlbedo, kNormal, kRoughness, kOther };
+
+/// D_i of a map, in sampled values: D = scale (sample - zero), in units of full scale, 0 beyond the map's channels.
+struct EngineDifference {
+  std::array<double, 4> zero{};
+  std::array<double, 4> scale{};
+};
+
+struct EngineMap {
+  std::string id;  ///< the map's name, as shading languages take it
+  PackageMap map;
+  MapRole role = MapRole::kOther;
+  std::vector<EngineDifference> differences;  ///< C, of codes of 8 bits
+};
+
+/// The maps of 8 and 16 bits: engines take no floats of ours.
+std::vector<EngineMap> engineMaps(const Package& package);
+
+/// Throws InputError where engineMaps() found none.
+void requireMaps(const Package& package, const std::vector<EngineMap>& maps);
+
+/// Writes textures/ID_neutral.png, 8 bits, rows from the top, nothing recorded that a reader might convert by.
+void writeNeutral(const Package& package, const EngineMap& map, const std::filesystem::path& folder);
+
+/// Writes textures/ID_difference_I.png likewise.
+void writeDifferences(const Package& package, const EngineMap& map, const std::filesystem::path& folder);
+
+/// Where writeStack() puts texture i: column i mod columns, row i div columns.
+struct StackLayout {
+  int columns = 1;
+  int rows = 1;
+};
+/// Throws InputError naming the map where no image of 16384 x 16384 texels holds all.
+StackLayout stackLayout(const Package& package, const EngineMap& map);
+
+/// Writes textures/ID_differences.png: all difference textures in one image, for importers that cut it into layers.
+void writeStack(const Package& package, const EngineMap& map, const std::filesystem::path& folder);
+
+/// Writes textures/weights_SET_FILE.png of every set that the maps use, as the package has it.
+void writeWeights(const Package& package, const std::vector<EngineMap>& maps, const std::filesystem::path& folder);
+
+/// Indices of the sets that the maps use, rising.
+std::vector<int> usedSets(const std::vector<EngineMap>& maps);
+
+/// A number as a literal of floats: digits enough to come back, always with a point.
+std::string literal(double value);
+/// "vec4(1.0, 2.0, 3.0, 4.0)", `type` being vec4 or float4.
+std::string literal(const std::string& type, const std::array<double, 4>& values);
+/// Four values of a set's scale or offset, from channel 4 file on.
+std::array<double, 4> fourOf(const std::vector<double>& values, std::size_t file);
+
+/// What turns a sample of a texture of so many channels into them: gray with alpha is sampled as (g, g, g, a).
+std::string swizzled(const std::string& type, const std::string& sample, int channels);
+
+}  // namespace facezip::exporting

@@ -5,6 +5,8 @@
 //
 //   FZ_DIFFERENCES  C, difference textures of the map; define before including                                  [4]
 //   FZ_BETA(n)      blendshape weight of expression n, times its gain; define before including   [fz_beta[n]]
+//   FZ_LAYERS, FZ_FETCH_LAYER(t, x, y, layer)  type of the weight maps, and a texel of one        [texture array]
+//   FZ_SEPARATE_DIFFERENCES  defined: difference textures are no array, and step 3 is the includer's
 //
 // Textures are as package.json names them, without colour conversion, mirroring or premultiplied alpha; v = 0 is the
 // first row of the file. Sampled values are 0..1: code / 255, or code / 65535.
@@ -20,7 +22,9 @@
 #define FZ_TEXTURE Texture2D<float4>
 #define FZ_ARRAY Texture2DArray<float4>
 #define FZ_FETCH(t, x, y) t.Load(int3(x, y, 0))
+#ifndef FZ_FETCH_LAYER
 #define FZ_FETCH_LAYER(t, x, y, layer) t.Load(int4(x, y, layer, 0))
+#endif
 #ifndef FZ_SAMPLE_LAYER
 #define FZ_SAMPLE_LAYER(t, uv, layer) t.Sample(fz_sampler, float3(uv, layer))
 #endif
@@ -32,17 +36,22 @@
 #define FZ_TEXTURE sampler2D
 #define FZ_ARRAY sampler2DArray
 #define FZ_FETCH(t, x, y) texelFetch(t, ivec2(x, y), 0)
+#ifndef FZ_FETCH_LAYER
 #define FZ_FETCH_LAYER(t, x, y, layer) texelFetch(t, ivec3(x, y, layer), 0)
+#endif
 #ifndef FZ_SAMPLE_LAYER
 #define FZ_SAMPLE_LAYER(t, uv, layer) texture(t, vec3(uv, float(layer)))
 #endif
 #define FZ_MIX mix
 #endif
+#ifndef FZ_LAYERS
+#define FZ_LAYERS FZ_ARRAY
+#endif
 
 // Step 1, once a frame for every cell q of the weight grid: w_i(q) = gain(q) sum_n beta_n W_n[i](q), four i at a time.
 //   layers      weight maps: layer n * groups + group holds channels 4 group .. 4 group + 3 of expression n
 //   scale       of the four channels, times 255;  offset  of the four channels
-vec4 fz_blend_weights(FZ_ARRAY layers, ivec2 cell, int expressions, int groups, int group, vec4 scale, vec4 offset,
+vec4 fz_blend_weights(FZ_LAYERS layers, ivec2 cell, int expressions, int groups, int group, vec4 scale, vec4 offset,
                       float gain) {
   vec4 codes = vec4(0.0, 0.0, 0.0, 0.0);
   float beta_sum = 0.0;
@@ -77,7 +86,7 @@ vec4 fz_weights(FZ_TEXTURE grid, vec2 cell, vec2 cells, int group) {
 }
 
 // Steps 1 and 2 in one, for engines where a pass of its own is a burden: every expression in use costs four fetches.
-vec4 fz_weights_in_one_pass(FZ_ARRAY layers, vec2 cell, vec2 cells, int expressions, int groups, int group, vec4 scale,
+vec4 fz_weights_in_one_pass(FZ_LAYERS layers, vec2 cell, vec2 cells, int expressions, int groups, int group, vec4 scale,
                             vec4 offset) {
   int x0 = int(cell.x);
   int y0 = int(cell.y);
@@ -99,6 +108,7 @@ vec4 fz_weights_in_one_pass(FZ_ARRAY layers, vec2 cell, vec2 cells, int expressi
   return codes * scale + offset * beta_sum;
 }
 
+#ifndef FZ_SEPARATE_DIFFERENCES
 // Step 3: sum_i D_i(p) w_i(p) in units of full scale; T(p) is the neutral, sampled, plus this.
 //   codes  layer i is difference texture i;  zero  code that means 0, as it is sampled, per channel
 //   scale  what a sampled value of 1 more adds: scale of package.json * largest code / 255, per channel
@@ -112,3 +122,4 @@ vec4 fz_difference(FZ_ARRAY codes, vec2 uv, vec4 low, vec4 high, vec4 zero[FZ_DI
   }
   return sum;
 }
+#endif

@@ -9,7 +9,7 @@
 
 namespace facezip {
 
-/// Names of the targets: "blender", "gltf", "godot", "three".
+/// Names of the targets: "blender", "gltf", "godot", "three", "unity", "unreal".
 std::vector<std::string> exportTargets();
 
 /// Writes a folder: `scene.gltf` with `scene.bin` (the mesh with morph targets), `package` (a copy) or `textures` as

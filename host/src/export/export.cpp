@@ -11,6 +11,8 @@
 #include "export/export_files.hpp"
 #include "export/gltf_scene.hpp"
 #include "export/godot.hpp"
+#include "export/unity.hpp"
+#include "export/unreal.hpp"
 #include "facezip/view.hpp"
 #include "io/staged_directory.hpp"
 #include "package/package_json.hpp"
@@ -39,7 +41,9 @@ const std::map<std::string, Target>& targets() {
       {"gltf", {{"gltf.md", "facezip_blend.h"}}},
       {"three", {{"three.md", "facezip_three.js"}}},
       {"blender", {{"blender.md", "facezip_blender.py"}}},
-      {"godot", {{"godot.md", "facezip_face.gd", "demo.gd"}, Textures::kNone, exporting::writeGodot}}};
+      {"godot", {{"godot.md", "facezip_face.gd", "demo.gd"}, Textures::kNone, exporting::writeGodot}},
+      {"unity", {{"unity.md", "FaceZipDriver.cs", "FaceZipImport.cs"}, Textures::kOwn, exporting::writeUnity}},
+      {"unreal", {{"unreal.md", "facezip_unreal.py"}, Textures::kNone, exporting::writeUnreal}}};
   return all;
 }
 

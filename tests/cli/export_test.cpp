@@ -1,0 +1,133 @@
+// `facezip export` as users script it: what lies in the folder for each target, and what is refused.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "exit_codes.hpp"
+#include "io/staged_directory.hpp"
+#include "run_command.hpp"
+#include "small_capture.hpp"
+#include "temporary_directory.hpp"
+
+namespace facezip {
+namespace {
+namespace fs = std::filesystem;
+using test::quoted;
+using test::runFacezip;
+using testing::HasSubstr;
+using testing::IsSupersetOf;
+
+class Export : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new test::TemporaryDirectory;
+    compress("face", {.expressions = 6, .maps = {"albedo", "normal"}});
+    compress("bare", {.expressions = 6}, " --no-mesh");
+    compress("crowd", {.expressions = 100, .width = 40, .height = 40}, " --differences 5");
+    compress("floats", {.expressions = 5, .type = image::SampleType::kFloat32, .extension = "exr"});
+  }
+  static void TearDownTestSuite() { delete folder_; }
+
+  static void compress(const std::string& name, const test::SmallCaptureOptions& options,
+                       const std::string& more = "") {
+    test::writeSmallCapture(folder() / (name + "_capture"), options);
+    const test::CommandResult result =
+        runFacezip("compress " + quoted(folder() / (name + "_capture")) + " --output " + quoted(folder() / name) +
+                   " --unit m --mask-radius 5cm --restarts 3" + more);
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+  }
+  static test::CommandResult exportTo(const std::string& package, const std::string& target, const fs::path& output) {
+    return runFacezip("export " + quoted(folder() / package) + " --target " + target + " --output " + quoted(output));
+  }
+  static fs::path folder() { return folder_->path(); }
+  static std::string textOf(const fs::path& file) {
+    std::ifstream in(file);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  static std::set<std::string> namesIn(const fs::path& folder) {
+    std::set<std::string> names;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+      if (entry.is_regular_file()) names.insert(entry.path().lexically_relative(folder).string());
+    }
+    return names;
+  }
+
+  static test::TemporaryDirectory* folder_;
+};
+
+test::TemporaryDirectory* Export::folder_ = nullptr;
+
+const std::map<std::string, std::vector<std::string>> kFiles = {
+    {"gltf", {"facezip_blend.h", "package/package.json"}},
+    {"three", {"facezip_three.js", "package/mesh.glb", "package/weights.png"}},
+    {"blender", {"facezip_blender.py", "package/normal/difference_3.png"}},
+    {"godot",
+     {"project.godot", "face.tscn", "face.shader", "face.material.tres", "facezip_face.gd", "demo.tscn", "demo.gd",
+      "scene.gltf.import", "textures/albedo_neutral.png.import", "textures/normal_differences.png.import",
+      "textures/weights_0_0.png"}},
+    {"unity",
+     {"FaceZip.shader", "FaceZip.hlsl", "FaceZip.json", "FaceZipDriver.cs", "FaceZipImport.cs",
+      "textures/albedo_difference_3.png", "textures/normal_neutral.png", "textures/weights_0_0.png"}},
+    {"unreal",
+     {"facezip_unreal.py", "FaceZip.ush", "FaceZip.json", "node_albedo.hlsl", "node_normal.hlsl",
+      "textures/albedo_difference_3.png", "textures/weights_0_0.png"}}};
+
+TEST_F(Export, EveryTargetBringsWhatItsReadmeSpeaksOf) {
+  for (const auto& [target, files] : kFiles) {
+    const fs::path out = folder() / ("to_" + target);
+    const test::CommandResult result = exportTo("face", target, out);
+    ASSERT_EQ(result.exit_code, 0) << target << ": " << result.error;
+    const std::set<std::string> names = namesIn(out);
+    EXPECT_THAT(names, IsSupersetOf({std::string("scene.gltf"), std::string("scene.bin"), std::string("README.md")}));
+    EXPECT_THAT(names, IsSupersetOf(files)) << target;
+    for (const std::string& name : names) {
+      if (name.ends_with(".png")) continue;
+      EXPECT_THAT(textOf(out / name), testing::Not(HasSubstr("@NAME@"))) << name;
+    }
+    EXPECT_EQ(exportTo("face", target, out).exit_code, 0) << "replaced";
+    EXPECT_EQ(namesIn(out), names);
+  }
+  EXPECT_THAT(textOf(folder() / "to_unity/FaceZip.shader"),
+              HasSubstr("albedo_difference_3 (\"albedo_difference_3\", 2D)"));
+  EXPECT_THAT(textOf(folder() / "to_godot/face.tscn"), HasSubstr("PoolStringArray( \"e00\""));
+}
+
+TEST_F(Export, HelpNamesEveryTarget) {
+  const test::CommandResult result = runFacezip("export --help");
+  for (const auto& [target, files] : kFiles) EXPECT_THAT(result.out, HasSubstr(target));
+}
+
+TEST_F(Export, WithoutNormalsAndWithAHundredExpressions) {
+  for (const auto& [target, files] : kFiles) {
+    const fs::path out = folder() / ("crowd_" + target);
+    const test::CommandResult result = exportTo("crowd", target, out);
+    ASSERT_EQ(result.exit_code, 0) << target << ": " << result.error;
+  }
+  EXPECT_THAT(textOf(folder() / "crowd_unity/FaceZip.hlsl"), HasSubstr("float fz_beta[100]"));
+  EXPECT_THAT(textOf(folder() / "crowd_unreal/node_albedo.hlsl"), HasSubstr("face.fz_beta[99] = beta_99;"));
+  EXPECT_THAT(textOf(folder() / "crowd_godot/face.shader"), testing::Not(HasSubstr("NORMALMAP")));
+  EXPECT_TRUE(fs::exists(folder() / "crowd_godot/textures/weights_0_1.png")) << "C = 5";
+}
+
+TEST_F(Export, BadInputIsRefusedAndLeavesNothing) {
+  const fs::path out = folder() / "refused";
+  const auto fails = [&](const test::CommandResult& result, int code, const std::string& part) {
+    EXPECT_EQ(result.exit_code, code) << result.error;
+    EXPECT_THAT(result.error, HasSubstr(part));
+    EXPECT_FALSE(fs::exists(out));
+  };
+  for (const auto& [target, files] : kFiles) {
+    fails(exportTo("bare", target, out), cli::kExitInput, "mesh: expected a package with meshes");
+    fails(exportTo("nowhere", target, out), cli::kExitInput, "nowhere");
+  }
+  for (const std::string target : {"godot", "unity", "unreal"}) {
+    fails(exportTo("floats", target, out), cli::kExitInput, "maps: expected one of 8 or 16 bits");
+  }
+  EXPECT_EQ(exportTo("floats", "gltf", folder() / "floats_gltf").exit_code, 0);
+  fails(exportTo("face", "maya", out), cli::kExitUsage, "maya");
+}
+
+}  // namespace
+}  // namespace facezip

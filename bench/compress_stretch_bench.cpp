@@ -1,7 +1,7 @@
 #include <benchmark/benchmark.h>
 
+#include "compress/bands/difference.hpp"
 #include "compress/compress_stretch.hpp"
-#include "compress/difference.hpp"
 #include "raster/texel_masks.hpp"
 #include "roof.hpp"
 #include "synthetic_capture.hpp"

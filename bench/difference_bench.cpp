@@ -1,6 +1,6 @@
 #include <benchmark/benchmark.h>
 
-#include "compress/difference.hpp"
+#include "compress/bands/difference.hpp"
 #include "roof.hpp"
 #include "synthetic_capture.hpp"
 

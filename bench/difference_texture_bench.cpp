@@ -1,9 +1,9 @@
 #include <benchmark/benchmark.h>
 
-#include "compress/difference.hpp"
-#include "compress/difference_texture.hpp"
-#include "compress/texture_encoder.hpp"
-#include "compress/texture_range.hpp"
+#include "compress/bands/difference.hpp"
+#include "compress/codes/texture_encoder.hpp"
+#include "compress/codes/texture_range.hpp"
+#include "compress/search/difference_texture.hpp"
 #include "roof.hpp"
 #include "synthetic_capture.hpp"
 

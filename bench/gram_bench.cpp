@@ -1,7 +1,7 @@
 #include <benchmark/benchmark.h>
 
-#include "compress/difference.hpp"
-#include "compress/gram.hpp"
+#include "compress/bands/difference.hpp"
+#include "compress/search/gram.hpp"
 #include "roof.hpp"
 #include "synthetic_capture.hpp"
 

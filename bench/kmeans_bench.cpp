@@ -1,6 +1,6 @@
 #include <benchmark/benchmark.h>
 
-#include "compress/kmeans.hpp"
+#include "compress/search/kmeans.hpp"
 #include "roof.hpp"
 #include "synthetic_grams.hpp"
 

@@ -1,6 +1,6 @@
 #include <benchmark/benchmark.h>
 
-#include "compress/permutation_search.hpp"
+#include "compress/search/permutation_search.hpp"
 #include "roof.hpp"
 #include "synthetic_grams.hpp"
 

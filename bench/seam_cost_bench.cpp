@@ -1,6 +1,6 @@
 #include <benchmark/benchmark.h>
 
-#include "compress/seam_cost.hpp"
+#include "compress/search/seam_cost.hpp"
 #include "roof.hpp"
 #include "synthetic_grams.hpp"
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "compress/gram_matrices.hpp"
-#include "compress/tile_band.hpp"
+#include "compress/bands/tile_band.hpp"
+#include "compress/search/gram_matrices.hpp"
 
 namespace facezip::bench {
 

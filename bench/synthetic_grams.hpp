@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "compress/counter_hash.hpp"
-#include "compress/gram_matrices.hpp"
+#include "compress/search/counter_hash.hpp"
+#include "compress/search/gram_matrices.hpp"
 
 namespace facezip::bench {
 

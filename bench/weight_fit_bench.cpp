@@ -4,12 +4,12 @@
 
 #include <vector>
 
-#include "compress/counter_hash.hpp"
-#include "compress/difference.hpp"
-#include "compress/difference_fit.hpp"
-#include "compress/half_cells.hpp"
-#include "compress/weight_system.hpp"
-#include "compress/weight_window.hpp"
+#include "compress/bands/difference.hpp"
+#include "compress/refine/difference_fit.hpp"
+#include "compress/refine/half_cells.hpp"
+#include "compress/refine/weight_system.hpp"
+#include "compress/refine/weight_window.hpp"
+#include "compress/search/counter_hash.hpp"
 #include "roof.hpp"
 #include "synthetic_capture.hpp"
 

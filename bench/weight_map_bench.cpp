@@ -1,7 +1,7 @@
 #include <benchmark/benchmark.h>
 
-#include "compress/counter_hash.hpp"
-#include "compress/weight_map.hpp"
+#include "compress/search/counter_hash.hpp"
+#include "compress/search/weight_map.hpp"
 #include "roof.hpp"
 
 namespace facezip::bench {

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "compress/gram_matrices.hpp"
+#include "compress/search/gram_matrices.hpp"
 
 namespace facezip::test {
 

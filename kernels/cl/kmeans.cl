@@ -29,7 +29,7 @@
 #define COINCIDENT_FRAGMENTS 1e-6f
 #define COINCIDENT_CENTRE 1e-5f
 
-// The same as counterHash() in host/src/compress/counter_hash.hpp.
+// The same as counterHash() in host/src/compress/search/counter_hash.hpp.
 ulong mix_bits(ulong x) {
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9UL;
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebUL;

@@ -1,4 +1,4 @@
-#include "compress/block_rank_energy.hpp"
+#include "compress/rate/block_rank_energy.hpp"
 
 #include <gtest/gtest.h>
 

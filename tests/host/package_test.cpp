@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "compress/texture_encoding.hpp"
+#include "compress/codes/texture_encoding.hpp"
 #include "image/image_file.hpp"
 #include "io/staged_directory.hpp"
 #include "package/package_json.hpp"

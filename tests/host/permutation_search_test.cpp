@@ -1,4 +1,4 @@
-#include "compress/permutation_search.hpp"
+#include "compress/search/permutation_search.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <numeric>
 #include <random>
 
-#include "compress/texture_assignment.hpp"
+#include "compress/search/texture_assignment.hpp"
 #include "reference/permutation_search.hpp"
 #include "tolerances.hpp"
 

@@ -1,4 +1,4 @@
-#include "compress/permutation_solver.hpp"
+#include "compress/search/permutation_solver.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "compress/branch_and_bound.hpp"
-#include "compress/cycle_relaxation.hpp"
+#include "compress/search/branch_and_bound.hpp"
+#include "compress/search/cycle_relaxation.hpp"
 #include "reference/permutation_search.hpp"
 #include "tolerances.hpp"
 

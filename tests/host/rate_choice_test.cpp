@@ -1,4 +1,4 @@
-#include "compress/rate_choice.hpp"
+#include "compress/rate/rate_choice.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "compress/code_bits.hpp"
-#include "compress/grid_weights.hpp"
+#include "compress/refine/grid_weights.hpp"
 #include "facezip/compress.hpp"
 #include "facezip/evaluate.hpp"
 #include "facezip/package.hpp"

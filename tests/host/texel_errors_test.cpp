@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compress/covered_texels.hpp"
+#include "compress/bands/covered_texels.hpp"
 #include "small_capture.hpp"
 
 namespace facezip {

@@ -1,4 +1,4 @@
-#include "compress/texture_encoding.hpp"
+#include "compress/codes/texture_encoding.hpp"
 
 #include <gtest/gtest.h>
 

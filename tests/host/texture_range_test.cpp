@@ -1,4 +1,4 @@
-#include "compress/texture_range.hpp"
+#include "compress/codes/texture_range.hpp"
 
 #include <gtest/gtest.h>
 

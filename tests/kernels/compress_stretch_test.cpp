@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "canary_buffer.hpp"
-#include "compress/difference.hpp"
+#include "compress/bands/difference.hpp"
 #include "reference/compress_stretch.hpp"
 #include "reference/difference.hpp"
 #include "synthetic_band.hpp"

@@ -1,4 +1,4 @@
-#include "compress/difference.hpp"
+#include "compress/bands/difference.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "compress/difference_texture.hpp"
+#include "compress/search/difference_texture.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "canary_buffer.hpp"
-#include "compress/difference.hpp"
-#include "compress/texture_encoder.hpp"
-#include "compress/texture_range.hpp"
+#include "compress/bands/difference.hpp"
+#include "compress/codes/texture_encoder.hpp"
+#include "compress/codes/texture_range.hpp"
 #include "reference/difference.hpp"
 #include "reference/difference_texture.hpp"
 #include "synthetic_band.hpp"

@@ -1,4 +1,4 @@
-#include "compress/gram.hpp"
+#include "compress/search/gram.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "canary_buffer.hpp"
-#include "compress/difference.hpp"
+#include "compress/bands/difference.hpp"
 #include "reference/difference.hpp"
 #include "reference/gram.hpp"
 #include "synthetic_band.hpp"

@@ -8,10 +8,10 @@
 #include <random>
 #include <vector>
 
-#include "compress/difference.hpp"
-#include "compress/difference_fit.hpp"
-#include "compress/weight_system.hpp"
-#include "compress/weight_window.hpp"
+#include "compress/bands/difference.hpp"
+#include "compress/refine/difference_fit.hpp"
+#include "compress/refine/weight_system.hpp"
+#include "compress/refine/weight_window.hpp"
 #include "reference/difference.hpp"
 #include "reference/weight_fit.hpp"
 #include "synthetic_band.hpp"

@@ -1,5 +1,5 @@
 // The refinement's turns on half cells against the same done texel by texel.
-#include "compress/half_cells.hpp"
+#include "compress/refine/half_cells.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "compress/kmeans.hpp"
+#include "compress/search/kmeans.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

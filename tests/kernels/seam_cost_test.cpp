@@ -1,4 +1,4 @@
-#include "compress/seam_cost.hpp"
+#include "compress/search/seam_cost.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "compress/tile_band.hpp"
+#include "compress/bands/tile_band.hpp"
 
 namespace facezip::test {
 

@@ -1,4 +1,4 @@
-#include "compress/weight_map.hpp"
+#include "compress/search/weight_map.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <random>
 
-#include "compress/permutation_search.hpp"
-#include "compress/texture_assignment.hpp"
+#include "compress/search/permutation_search.hpp"
+#include "compress/search/texture_assignment.hpp"
 #include "reference/weight_map.hpp"
 #include "search_capture.hpp"
 #include "test_device.hpp"

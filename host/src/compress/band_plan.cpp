@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "compress/map_bands.hpp"
-#include "compress/refinement.hpp"
-#include "compress/weight_system.hpp"
+#include "compress/bands/map_bands.hpp"
+#include "compress/refine/refinement.hpp"
+#include "compress/refine/weight_system.hpp"
 
 namespace facezip::compress {
 namespace {

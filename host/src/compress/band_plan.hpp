@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <span>
 
-#include "compress/map_set.hpp"
-#include "compress/tile_band.hpp"
-#include "compress/weight_window.hpp"
+#include "compress/bands/map_set.hpp"
+#include "compress/bands/tile_band.hpp"
+#include "compress/refine/weight_window.hpp"
 #include "facezip/device.hpp"
 
 namespace facezip::compress {

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "compress/grid_weights.hpp"
-#include "compress/texture_encoding.hpp"
+#include "compress/codes/texture_encoding.hpp"
+#include "compress/refine/grid_weights.hpp"
 #include "facezip/sample_type.hpp"
 
 namespace facezip::compress {

@@ -14,7 +14,7 @@
 #include "compress/gram_stage.hpp"
 #include "compress/open_stage.hpp"
 #include "compress/rate_stage.hpp"
-#include "compress/refinement.hpp"
+#include "compress/refine/refinement.hpp"
 #include "compress/search_stage.hpp"
 #include "compress/write_stage.hpp"
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "compress/difference.hpp"
-#include "compress/difference_fit.hpp"
-#include "compress/refinement.hpp"
+#include "compress/bands/difference.hpp"
+#include "compress/refine/difference_fit.hpp"
+#include "compress/refine/refinement.hpp"
 #include "facezip/geometry/skin_strain.hpp"
 #include "raster/cell_samples.hpp"
 

@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "compress/difference_fit.hpp"
-#include "compress/grid_weights.hpp"
+#include "compress/refine/difference_fit.hpp"
+#include "compress/refine/grid_weights.hpp"
 #include "compress/texture_source.hpp"
 #include "facezip/geometry/mesh.hpp"
 #include "raster/uv_raster.hpp"

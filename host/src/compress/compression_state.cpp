@@ -6,7 +6,7 @@
 
 #include "compress/band_plan.hpp"
 #include "compress/compress_stretch.hpp"
-#include "compress/refinement.hpp"
+#include "compress/refine/refinement.hpp"
 
 namespace facezip::compress {
 

@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "compress/bands/map_bands.hpp"
+#include "compress/bands/map_set.hpp"
 #include "compress/face.hpp"
 #include "compress/face_guides.hpp"
 #include "compress/importance.hpp"
-#include "compress/map_bands.hpp"
-#include "compress/map_set.hpp"
-#include "compress/rate_search.hpp"
+#include "compress/rate/rate_search.hpp"
 #include "compress/stage_clock.hpp"
 #include "compress/texture_source.hpp"
 #include "compress/weight_group.hpp"

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "compress/codes/texture_range.hpp"
 #include "compress/compress_stretch.hpp"
-#include "compress/refinement.hpp"
-#include "compress/texture_range.hpp"
+#include "compress/refine/refinement.hpp"
 
 namespace facezip::compress {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "compress/gram.hpp"
+#include "compress/search/gram.hpp"
 
 namespace facezip::compress {
 namespace {

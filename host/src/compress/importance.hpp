@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "compress/tile_band.hpp"
+#include "compress/bands/tile_band.hpp"
 
 namespace facezip::compress {
 

@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "compress/texture_encoder.hpp"
+#include "compress/codes/texture_encoder.hpp"
 #include "facezip/package.hpp"
 #include "package/guides.hpp"
 #include "package/package_writer.hpp"

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "compress/bands/map_bands.hpp"
+#include "compress/bands/map_set.hpp"
 #include "compress/face_guides.hpp"
-#include "compress/grid_weights.hpp"
-#include "compress/map_bands.hpp"
-#include "compress/map_set.hpp"
+#include "compress/refine/grid_weights.hpp"
 #include "compress/texture_source.hpp"
 #include "facezip/capture.hpp"
 

@@ -1,11 +1,11 @@
 #include "compress/search_stage.hpp"
 
 #include "compress/compress_stretch.hpp"
-#include "compress/kmeans.hpp"
-#include "compress/permutation_solver.hpp"
-#include "compress/seam_cost.hpp"
-#include "compress/texture_assignment.hpp"
-#include "compress/weight_map.hpp"
+#include "compress/search/kmeans.hpp"
+#include "compress/search/permutation_solver.hpp"
+#include "compress/search/seam_cost.hpp"
+#include "compress/search/texture_assignment.hpp"
+#include "compress/search/weight_map.hpp"
 
 namespace facezip::compress {
 namespace {

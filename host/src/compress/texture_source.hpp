@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "compress/difference_fit.hpp"
-#include "compress/difference_texture.hpp"
-#include "compress/grid_weights.hpp"
-#include "compress/map_bands.hpp"
-#include "compress/map_set.hpp"
+#include "compress/bands/map_bands.hpp"
+#include "compress/bands/map_set.hpp"
+#include "compress/refine/difference_fit.hpp"
+#include "compress/refine/grid_weights.hpp"
+#include "compress/search/difference_texture.hpp"
 #include "raster/texel_masks.hpp"
 
 namespace facezip::compress {

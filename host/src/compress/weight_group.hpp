@@ -3,11 +3,11 @@
 
 #include <vector>
 
-#include "compress/difference_texture.hpp"
-#include "compress/gram_matrices.hpp"
-#include "compress/grid_weights.hpp"
-#include "compress/map_set.hpp"
-#include "compress/texture_encoding.hpp"
+#include "compress/bands/map_set.hpp"
+#include "compress/codes/texture_encoding.hpp"
+#include "compress/refine/grid_weights.hpp"
+#include "compress/search/difference_texture.hpp"
+#include "compress/search/gram_matrices.hpp"
 
 namespace facezip::compress {
 

@@ -7,7 +7,7 @@
 #include "compress/fit_stage.hpp"
 #include "compress/method_record.hpp"
 #include "compress/package_output.hpp"
-#include "compress/refinement.hpp"
+#include "compress/refine/refinement.hpp"
 
 namespace facezip::compress {
 namespace {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "compress/tile_band.hpp"
+#include "compress/bands/tile_band.hpp"
 #include "evaluate/error_distribution.hpp"
 #include "facezip/evaluate.hpp"
 

@@ -7,10 +7,10 @@
 #include <memory>
 #include <optional>
 
-#include "compress/block_rank_energy.hpp"
-#include "compress/covered_texels.hpp"
-#include "compress/gram.hpp"
-#include "compress/map_bands.hpp"
+#include "compress/bands/covered_texels.hpp"
+#include "compress/bands/map_bands.hpp"
+#include "compress/rate/block_rank_energy.hpp"
+#include "compress/search/gram.hpp"
 #include "compress/stage_clock.hpp"
 #include "evaluate/ablation.hpp"
 #include "evaluate/baseline_packages.hpp"

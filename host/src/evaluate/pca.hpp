@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "compress/tile_band.hpp"
+#include "compress/bands/tile_band.hpp"
 
 namespace facezip::evaluate {
 

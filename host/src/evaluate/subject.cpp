@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "compress/band_plan.hpp"
-#include "compress/map_bands.hpp"
+#include "compress/bands/map_bands.hpp"
 #include "compress/method_record.hpp"
 #include "facezip/rig.hpp"
 
@@ -129,7 +129,7 @@ void requireSameShape(const compress::OpenMap& map, const PackageMap& packed, co
 
 compress::MapSet openMaps(const Subject& subject) {
   compress::MapSet maps = compress::openMaps(subject.capture);
-  compress::makeRasters(maps, subject.face, 0);
+  compress::makeRasters(maps, subject.face.mesh, subject.face.region, 0);
   assignWeightScales(maps, subject.recorded.weight_scale);
   return maps;
 }

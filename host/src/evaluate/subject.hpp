@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "compress/bands/map_set.hpp"
 #include "compress/face.hpp"
-#include "compress/map_set.hpp"
 #include "evaluate/package_decoder.hpp"
 #include "facezip/capture.hpp"
 #include "facezip/compress.hpp"

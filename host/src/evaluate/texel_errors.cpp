@@ -3,7 +3,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "compress/covered_texels.hpp"
+#include "compress/bands/covered_texels.hpp"
 
 namespace facezip::evaluate {
 

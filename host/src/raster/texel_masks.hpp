@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "compress/gram_matrices.hpp"
-#include "compress/tile_band.hpp"
+#include "compress/bands/tile_band.hpp"
+#include "compress/search/gram_matrices.hpp"
 #include "facezip/geometry/face_region.hpp"
 #include "facezip/geometry/mask_weights.hpp"
 #include "raster/uv_raster.hpp"

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "compress/weight_map.hpp"
+#include "compress/search/weight_map.hpp"
 #include "raster/texel_masks.hpp"
 #include "raster/uv_raster.hpp"
 

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "compress/covered_texels.hpp"
-#include "compress/map_bands.hpp"
+#include "compress/bands/covered_texels.hpp"
+#include "compress/bands/map_bands.hpp"
 #include "raster/uv_raster.hpp"
 
 namespace facezip::rig {

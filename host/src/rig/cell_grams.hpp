@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "compress/map_set.hpp"
+#include "compress/bands/map_set.hpp"
 #include "facezip/progress.hpp"
 #include "rig/texture_solve.hpp"
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compress/grid_weights.hpp"
+#include "compress/refine/grid_weights.hpp"
 #include "facezip/package.hpp"
 #include "io/staged_directory.hpp"
 #include "package/package_json.hpp"
@@ -101,7 +101,7 @@ compress::EncodedWeights solveSet(const Package& package, int set, const Texture
 
 compress::MapSet openPackageMaps(const Capture& capture, const compress::Face& face, const Package& package) {
   compress::MapSet maps = compress::openMaps(capture);
-  compress::makeRasters(maps, face, 0);
+  compress::makeRasters(maps, face.mesh, face.region, 0);
   for (std::size_t m = 0; m < maps.maps.size(); ++m) {
     maps.maps[m].weight_scale = package.maps()[m].weight_scale;
     maps.maps[m].fit_weight = maps.maps[m].metric_weight;

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "compress/bands/map_set.hpp"
 #include "compress/face.hpp"
-#include "compress/map_set.hpp"
 #include "facezip/capture.hpp"
 #include "facezip/package.hpp"
 #include "facezip/progress.hpp"

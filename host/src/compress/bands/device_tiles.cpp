@@ -1,0 +1,39 @@
+#include "compress/bands/device_tiles.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace facezip::compress {
+
+DeviceTiles::DeviceTiles(device::DeviceContext& context)
+    : positions_(context, "tile positions", CL_MEM_READ_ONLY),
+      mask_begin_(context, "mask lists of the tiles", CL_MEM_READ_ONLY),
+      mask_index_(context, "mask indices of the tiles", CL_MEM_READ_ONLY),
+      mask_weights_(context, "mask weights of the tiles", CL_MEM_READ_ONLY),
+      texel_weights_(context, "texel weights of the tiles", CL_MEM_READ_ONLY) {}
+
+void DeviceTiles::upload(const TileMasks& masks) {
+  assert(masks.mask_begin.size() == masks.tiles.size() + 1);
+  assert(masks.mask_begin.back() == static_cast<int>(masks.mask_index.size()));
+  assert(masks.mask_weights.size() == masks.mask_index.size() * kTileTexels);
+  assert(masks.texel_weights.size() == masks.tiles.size() * kTileTexels);
+  tile_count_ = masks.tiles.size();
+  begin_ = masks.mask_begin;
+  index_ = masks.mask_index;
+  most_masks_ = 0;
+  for (std::size_t t = 0; t < tile_count_; ++t) most_masks_ = std::max(most_masks_, begin_[t + 1] - begin_[t]);
+  static_assert(sizeof(TilePosition) == 2 * sizeof(cl_int));
+  positions_.upload(std::span<const TilePosition>(masks.tiles));
+  mask_begin_.upload(std::span<const int>(masks.mask_begin));
+  mask_index_.upload(std::span<const int>(masks.mask_index));
+  mask_weights_.upload(std::span<const float>(masks.mask_weights));
+  texel_weights_.upload(std::span<const float>(masks.texel_weights));
+}
+
+std::span<const int> DeviceTiles::masksOf(std::size_t t) const {
+  assert(t < tile_count_);
+  return std::span<const int>(index_).subspan(static_cast<std::size_t>(begin_[t]),
+                                              static_cast<std::size_t>(begin_[t + 1] - begin_[t]));
+}
+
+}  // namespace facezip::compress

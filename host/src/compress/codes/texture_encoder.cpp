@@ -1,0 +1,57 @@
+#include "compress/codes/texture_encoder.hpp"
+
+#include <fmt/format.h>
+
+#include <cassert>
+#include <cstring>
+
+namespace facezip::compress {
+namespace {
+
+std::string encodeDefines(const BandShape& shape, int bits) {
+  return fmt::format("-D CHANNELS={} -D CODE_BITS={}", shape.channels, bits);
+}
+
+}  // namespace
+
+void TextureEncoder::clear(const BandShape& shape, int bits) {
+  cl::Kernel kernel =
+      context_.kernel("difference_texture_encode.cl", "difference_texture_clear", encodeDefines(shape, bits));
+  kernel.setArg(0, encoding_.buffer());
+  kernel.setArg(1, codes_.buffer());
+  context_.run(kernel,
+               cl::NDRange(static_cast<std::size_t>(shape.width), static_cast<std::size_t>(shape.rows),
+                           static_cast<std::size_t>(textures_count_)),
+               cl::NullRange);
+}
+
+void TextureEncoder::encode(const DeviceTiles& tiles, const BandShape& shape, const cl::Buffer& textures,
+                            std::span<const TextureEncoding> encoding, int bits, std::span<std::byte> codes) {
+  assert(encoding.size() == static_cast<std::size_t>(textures_count_) * static_cast<std::size_t>(shape.channels));
+  assert(bits == 8 || bits == 16);
+  assert(codes.size() == static_cast<std::size_t>(shape.rows) * static_cast<std::size_t>(shape.width) *
+                             encoding.size() * static_cast<std::size_t>(bits / 8));
+  std::vector<cl_float2> factors;
+  for (const TextureEncoding& e : encoding) factors.push_back({{e.scale > 0.0f ? 1.0f / e.scale : 0.0f, e.offset}});
+  encoding_.upload(std::span<const cl_float2>(factors));
+  codes_.reserve(codes.size());
+  clear(shape, bits);
+  if (tiles.tileCount() > 0) {
+    device::requireBytes(context_, textures, tiles.tileCount() * encoding.size() * kTileTexels * sizeof(float),
+                         "difference textures of a band");
+    cl::Kernel kernel =
+        context_.kernel("difference_texture_encode.cl", "difference_texture_encode", encodeDefines(shape, bits));
+    kernel.setArg(0, tiles.positions());
+    kernel.setArg(1, textures);
+    kernel.setArg(2, encoding_.buffer());
+    kernel.setArg(3, codes_.buffer());
+    kernel.setArg(4, static_cast<cl_int>(shape.width));
+    kernel.setArg(5, static_cast<cl_int>(shape.rows));
+    context_.run(kernel, cl::NDRange(kTileSide, static_cast<std::size_t>(textures_count_), tiles.tileCount()),
+                 cl::NDRange(context_.workGroupSize(kernel, kTileSide), 1, 1));
+  }
+  const device::MappedBytes mapped = codes_.mapForReading(codes.size());
+  if (!codes.empty()) std::memcpy(codes.data(), mapped.bytes().data(), codes.size());
+}
+
+}  // namespace facezip::compress

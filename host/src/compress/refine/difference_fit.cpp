@@ -1,0 +1,82 @@
+#include "compress/refine/difference_fit.hpp"
+
+#include <fmt/format.h>
+
+#include <cassert>
+#include <cmath>
+
+#include "compress/bands/difference.hpp"
+
+namespace facezip::compress {
+
+std::string gridDefines(const BandShape& shape, const WeightSpace& space, int weight_scale) {
+  return fmt::format("{} -D TEXTURES={} -D EXPRESSIONS={} -D EXPRESSION_LANES={} -D WEIGHT_SCALE={}",
+                     differenceDefines(shape), space.textures, space.expressions, space.lanes(), weight_scale);
+}
+
+DifferenceFit::DifferenceFit(device::DeviceContext& context, const WeightSpace& space, device::KernelVariant variant)
+    : context_(context),
+      space_(space),
+      gpu_(context.resolve(variant) == device::KernelVariant::kGpu),
+      textures_(context, "difference textures"),
+      errors_(context, "errors of the difference textures"),
+      encoding_(context, "encoding of the difference textures", CL_MEM_READ_ONLY) {}
+
+const cl::Buffer& DifferenceFit::compute(const GridBand& band, const WeightWindow& window, float ridge) {
+  return run(band, window, ridge, 0);
+}
+
+const cl::Buffer& DifferenceFit::computeRounded(const GridBand& band, const WeightWindow& window, float ridge,
+                                                std::span<const TextureEncoding> encoding, int bits) {
+  assert(encoding.size() == static_cast<std::size_t>(space_.textures * band.shape.channels));
+  std::vector<cl_float2> codes;
+  for (const TextureEncoding& e : encoding) {
+    codes.push_back({{e.scale, e.scale > 0.0f ? std::round(-e.offset / e.scale) : 0.0f}});
+  }
+  encoding_.upload(std::span<const cl_float2>(codes));
+  return run(band, window, ridge, (1 << bits) - 1);
+}
+
+const cl::Buffer& DifferenceFit::run(const GridBand& band, const WeightWindow& window, float ridge, int largest_code) {
+  assert(band.shape.expressions == space_.expressions && ridge > 0.0f);
+  tile_count_ = band.tiles.tileCount();
+  const std::size_t items = gpu_ ? kTileTexels : 1;  // of a tile
+  textures_.reserve(tile_count_ * static_cast<std::size_t>(space_.textures * band.shape.channels) * kTileTexels *
+                    sizeof(float));
+  errors_.reserve(tile_count_ * items * sizeof(cl_float2));
+  encoding_.reserve(sizeof(cl_float2));  // a kernel that doesn't round is given a buffer all the same
+  if (tile_count_ == 0) return textures_.buffer();
+  device::requireBytes(context_, band.differences, differenceBufferBytes(band.shape, tile_count_),
+                       "differences of a band");
+  std::string defines = fmt::format("{} -D LANES={} -D ROWS={}", gridDefines(band.shape, space_, band.weight_scale),
+                                    gpu_ ? 1 : kTileSide, gpu_ ? 1 : kTileSide);
+  if (largest_code > 0) defines += fmt::format(" -D CODES={}", largest_code);
+  cl::Kernel kernel = context_.kernel("difference_fit.cl", "difference_fit", defines);
+  const cl::Buffer* buffers[] = {&band.tiles.positions(), &band.tiles.texelWeights(), &band.tiles.maskWeights(),
+                                 &band.differences,       &window.weightsBuffer(),    &encoding_.buffer(),
+                                 &textures_.buffer(),     &errors_.buffer()};
+  cl_uint argument = 0;
+  for (const cl::Buffer* buffer : buffers) kernel.setArg(argument++, *buffer);
+  kernel.setArg(argument++, static_cast<cl_int>(band.first_row));
+  kernel.setArg(argument++, static_cast<cl_int>(window.rows().begin));
+  kernel.setArg(argument++, static_cast<cl_int>(space_.columns));
+  kernel.setArg(argument++, static_cast<cl_int>(space_.rows));
+  kernel.setArg(argument++, ridge);
+  context_.run(kernel, cl::NDRange(items, tile_count_), cl::NDRange(context_.workGroupSize(kernel, items), 1));
+  return textures_.buffer();
+}
+
+std::vector<FitError> DifferenceFit::errors() {
+  std::vector<FitError> result(tile_count_);
+  if (tile_count_ == 0) return result;
+  const std::size_t items = gpu_ ? kTileTexels : 1;
+  const device::MappedBytes mapped = errors_.mapForReading(tile_count_ * items * sizeof(cl_float2));
+  const std::span<const cl_float2> sums = mapped.as<const cl_float2>();
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    result[i / items].weighted += static_cast<double>(sums[i].s[0]);
+    result[i / items].plain += static_cast<double>(sums[i].s[1]);
+  }
+  return result;
+}
+
+}  // namespace facezip::compress

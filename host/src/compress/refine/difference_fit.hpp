@@ -1,0 +1,70 @@
+// difference_fit.hpp - the difference textures that suit given weights best, texel by texel ("closed loop").
+//   D(p) = argmin sum_n |Delta_n(p) - D^T w_n(p)|^2 + ridge |D|^2
+// w_n is what the run time makes of the weight maps: bilinear between the cells (FaceZip, Eq. 8).
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "compress/bands/device_tiles.hpp"
+#include "compress/bands/tile_band.hpp"
+#include "compress/codes/texture_encoding.hpp"
+#include "compress/refine/weight_window.hpp"
+#include "device/device_context.hpp"
+#include "device/pooled_buffer.hpp"
+
+namespace facezip::compress {
+
+/// A band of one map on the device, and where it lies on the weight grid. References must outlive what takes it.
+struct GridBand {
+  const DeviceTiles& tiles;  ///< one mask a tile: above 0 where difference textures are wanted
+  const BandShape& shape;
+  const cl::Buffer& differences;  ///< what computeDifferences() wrote for the same tiles and shape
+  int first_row = 0;              ///< of the band in the image
+  int weight_scale = 0;           ///< texels of this map per cell, 1 to 64
+};
+
+/// Squared error that is left in one tile, in (1/255)^2, summed over expressions and channels.
+struct FitError {
+  double weighted = 0.0;  ///< over the covered texels, each times its texel weight
+  double plain = 0.0;     ///< each counted once
+};
+
+class DifferenceFit {
+ public:
+  /// variant  16 x 16 texels (kCpu) or one (kGpu) to a work-item
+  DifferenceFit(device::DeviceContext& context, const WeightSpace& space,
+                device::KernelVariant variant = device::KernelVariant::kAuto);
+
+  /// Computes the textures of a band: [tile][C][channel][256] float in units of 1/255, 0 where a tile's mask is 0.
+  /// Does not wait. The cells that the band's texels interpolate between must be in the window.
+  /// ridge  above 0; keeps textures tame where the weights say little
+  const cl::Buffer& compute(const GridBand& band, const WeightWindow& window, float ridge);
+
+  /// The same, rounded to codes of `bits` bits as the system is substituted back (Babai's nearest plane).
+  /// encoding  C x shape.channels
+  const cl::Buffer& computeRounded(const GridBand& band, const WeightWindow& window, float ridge,
+                                   std::span<const TextureEncoding> encoding, int bits);
+
+  const cl::Buffer& textures() const { return textures_.buffer(); }
+
+  /// What the last compute() leaves in every tile. Waits.
+  std::vector<FitError> errors();
+
+ private:
+  const cl::Buffer& run(const GridBand& band, const WeightWindow& window, float ridge, int largest_code);
+
+  device::DeviceContext& context_;
+  WeightSpace space_;
+  bool gpu_;
+  std::size_t tile_count_ = 0;
+  device::PooledBuffer textures_;
+  device::PooledBuffer errors_;
+  device::PooledBuffer encoding_;
+};
+
+/// "-D ..." of the kernels that know both texels and the weight grid.
+std::string gridDefines(const BandShape& shape, const WeightSpace& space, int weight_scale);
+
+}  // namespace facezip::compress

@@ -1,0 +1,128 @@
+#include "compress/refine/grid_weights.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <cstring>
+
+namespace facezip::compress {
+namespace {
+
+std::size_t cellsOf(const WeightSpace& space) {
+  return static_cast<std::size_t>(space.columns) * static_cast<std::size_t>(space.rows);
+}
+
+/// Finite halves in rising order have rising keys.
+std::uint16_t keyOf(Eigen::half value) {
+  const std::uint16_t bits = Eigen::numext::bit_cast<std::uint16_t>(value);
+  return (bits & 0x8000u) != 0 ? static_cast<std::uint16_t>(~bits) : static_cast<std::uint16_t>(bits | 0x8000u);
+}
+float valueOf(std::uint16_t key) {
+  const std::uint16_t bits =
+      (key & 0x8000u) != 0 ? static_cast<std::uint16_t>(key & 0x7fffu) : static_cast<std::uint16_t>(~key);
+  return static_cast<float>(Eigen::numext::bit_cast<Eigen::half>(bits));
+}
+
+}  // namespace
+
+GridWeights::GridWeights(const WeightSpace& space)
+    : space_(space),
+      values_(cellsOf(space) * static_cast<std::size_t>(space.textures) * static_cast<std::size_t>(space.expressions),
+              Eigen::half(0.0f)) {}
+
+void GridWeights::store(int begin, int end, std::span<const float> rows) {
+  assert(rows.size() == static_cast<std::size_t>(end - begin) * space_.rowFloats());
+  tbb::parallel_for(begin, end, [&](int row) {
+    const float* in = rows.data() + static_cast<std::size_t>(row - begin) * space_.rowFloats();
+    for (int column = 0; column < space_.columns; ++column) {
+      const auto cell =
+          static_cast<std::size_t>(row) * static_cast<std::size_t>(space_.columns) + static_cast<std::size_t>(column);
+      for (int i = 0; i < space_.textures; ++i, in += space_.lanes()) {
+        for (int n = 0; n < space_.expressions; ++n) values_[index(cell, i, n)] = Eigen::half(in[n]);
+      }
+    }
+  });
+}
+
+void GridWeights::load(int begin, int end, std::span<float> rows) const {
+  assert(rows.size() == static_cast<std::size_t>(end - begin) * space_.rowFloats());
+  tbb::parallel_for(begin, end, [&](int row) {
+    float* out = rows.data() + static_cast<std::size_t>(row - begin) * space_.rowFloats();
+    for (int column = 0; column < space_.columns; ++column) {
+      const auto cell =
+          static_cast<std::size_t>(row) * static_cast<std::size_t>(space_.columns) + static_cast<std::size_t>(column);
+      for (int i = 0; i < space_.textures; ++i, out += space_.lanes()) {
+        for (int n = 0; n < space_.expressions; ++n) out[n] = at(cell, i, n);
+        std::fill(out + space_.expressions, out + space_.lanes(), 0.0f);
+      }
+    }
+  });
+}
+
+std::pair<float, float> GridWeights::rangeOf(int texture, std::span<const std::uint8_t> used, double clipped) const {
+  std::vector<std::uint64_t> counts(std::size_t{1} << 16, 0);
+  std::uint64_t total = 0;
+  for (std::size_t cell = 0; cell < used.size(); ++cell) {
+    if (used[cell] == 0) continue;
+    for (int n = 0; n < space_.expressions; ++n) ++counts[keyOf(values_[index(cell, texture, n)])];
+    total += static_cast<std::uint64_t>(space_.expressions);
+  }
+  if (total == 0) return {0.0f, 0.0f};
+  const auto beyond = static_cast<std::uint64_t>(clipped * static_cast<double>(total));
+  std::size_t low = 0;
+  for (std::uint64_t seen = counts[low]; seen <= beyond; seen += counts[low]) ++low;
+  std::size_t high = counts.size() - 1;
+  for (std::uint64_t seen = counts[high]; seen <= beyond; seen += counts[high]) --high;
+  return {valueOf(static_cast<std::uint16_t>(low)), valueOf(static_cast<std::uint16_t>(high))};
+}
+
+EncodedWeights GridWeights::encode(std::span<const std::uint8_t> used, double clipped) const {
+  assert(used.size() == cellsOf(space_) && clipped >= 0.0 && clipped < 0.5);
+  EncodedWeights encoded;
+  std::vector<float> steps;  // codes per unit
+  for (int i = 0; i < space_.textures; ++i) {
+    const auto [low, high] = rangeOf(i, used, clipped);
+    const float scale = (high - low) / 255.0f;
+    encoded.scale.push_back(static_cast<double>(scale));
+    encoded.offset.push_back(static_cast<double>(low));
+    steps.push_back(scale > 0.0f ? 1.0f / scale : 0.0f);
+  }
+  const std::size_t cells = cellsOf(space_);
+  const auto textures = static_cast<std::size_t>(space_.textures);
+  encoded.codes.resize(cells * textures * static_cast<std::size_t>(space_.expressions));
+  tbb::parallel_for(0, space_.expressions, [&](int n) {
+    std::uint8_t* out = encoded.codes.data() + static_cast<std::size_t>(n) * cells * textures;
+    for (std::size_t cell = 0; cell < cells; ++cell) {
+      for (std::size_t i = 0; i < textures; ++i) {
+        const float position = (at(cell, static_cast<int>(i), n) - static_cast<float>(encoded.offset[i])) * steps[i];
+        *out++ = static_cast<std::uint8_t>(std::clamp(std::round(position), 0.0f, 255.0f));
+      }
+    }
+  });
+  return encoded;
+}
+
+void decodeRows(const EncodedWeights& weights, const WeightSpace& space, int begin, int end, std::span<float> rows) {
+  assert(rows.size() == static_cast<std::size_t>(end - begin) * space.rowFloats());
+  const std::size_t cells = cellsOf(space);
+  const auto textures = static_cast<std::size_t>(space.textures);
+  std::fill(rows.begin(), rows.end(), 0.0f);
+  tbb::parallel_for(begin, end, [&](int row) {
+    for (int n = 0; n < space.expressions; ++n) {
+      float* out = rows.data() + static_cast<std::size_t>(row - begin) * space.rowFloats() + n;
+      const std::size_t first = static_cast<std::size_t>(row) * static_cast<std::size_t>(space.columns);
+      const std::uint8_t* code = weights.codes.data() + (static_cast<std::size_t>(n) * cells + first) * textures;
+      for (int column = 0; column < space.columns; ++column) {
+        for (std::size_t i = 0; i < textures; ++i, out += space.lanes()) {
+          *out = static_cast<float>(weights.scale[i]) * static_cast<float>(*code++) +
+                 static_cast<float>(weights.offset[i]);
+        }
+      }
+    }
+  });
+}
+
+}  // namespace facezip::compress

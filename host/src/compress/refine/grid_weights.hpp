@@ -1,0 +1,53 @@
+// grid_weights.hpp - weight maps in host memory: as real numbers while they are fitted, then as the bytes of a package.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "compress/refine/weight_window.hpp"
+
+namespace facezip::compress {
+
+/// Weight maps as a package holds them: W = scale[i] * code + offset[i].
+struct EncodedWeights {
+  std::vector<double> scale;        ///< C, 0 or more
+  std::vector<double> offset;       ///< C
+  std::vector<std::uint8_t> codes;  ///< [N][cell][C]
+};
+
+/// Weights of the whole grid in half precision: an eighth of a code's step where weights reach from -4 to 4.
+class GridWeights {
+ public:
+  explicit GridWeights(const WeightSpace& space);
+
+  const WeightSpace& space() const { return space_; }
+  float at(std::size_t cell, int texture, int expression) const {
+    return static_cast<float>(values_[index(cell, texture, expression)]);
+  }
+
+  /// Between here and the rows of a WeightWindow, [row][column][C][lanes].
+  void store(int begin, int end, std::span<const float> rows);
+  void load(int begin, int end, std::span<float> rows) const;
+
+  /// Bytes, with the range of each channel taken from the cells that `used` marks: all but a share of `clipped` of the
+  /// values at either end lie in it, and those beyond are clamped. A few far weights would coarsen all others.
+  EncodedWeights encode(std::span<const std::uint8_t> used, double clipped) const;
+
+ private:
+  std::size_t index(std::size_t cell, int texture, int expression) const {
+    return (cell * static_cast<std::size_t>(space_.textures) + static_cast<std::size_t>(texture)) *
+               static_cast<std::size_t>(space_.expressions) +
+           static_cast<std::size_t>(expression);
+  }
+  std::pair<float, float> rangeOf(int texture, std::span<const std::uint8_t> used, double clipped) const;
+
+  WeightSpace space_;
+  std::vector<Eigen::half> values_;  ///< [cell][C][N]
+};
+
+/// What the run time decodes of rows [begin, end), [row][column][C][lanes].
+void decodeRows(const EncodedWeights& weights, const WeightSpace& space, int begin, int end, std::span<float> rows);
+
+}  // namespace facezip::compress

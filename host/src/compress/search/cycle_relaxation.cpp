@@ -1,0 +1,250 @@
+#include "compress/search/cycle_relaxation.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+#include "compress/search/coordinate_descent.hpp"
+
+namespace facezip::compress {
+namespace {
+
+// Of a triangle's pairs (k, l), (l, m), (k, m), in the order of all pairs.
+constexpr int kFirstSide = 0, kLastSide = 1;
+
+double lowest(std::span<const double> values) { return *std::min_element(values.begin(), values.end()); }
+
+/// Where the lowest and the second lowest value are; twice the same of a single value.
+std::pair<int, int> lowestTwo(std::span<const double> values) {
+  int best = 0, second = values.size() > 1 ? 1 : 0;
+  if (values[static_cast<std::size_t>(second)] < values[0]) std::swap(best, second);
+  for (int x = 2; x < static_cast<int>(values.size()); ++x) {
+    const double value = values[static_cast<std::size_t>(x)];
+    if (value < values[static_cast<std::size_t>(best)]) {
+      second = std::exchange(best, x);
+    } else if (value < values[static_cast<std::size_t>(second)]) {
+      second = x;
+    }
+  }
+  return {best, second};
+}
+
+/// f(rho) of one pair, C! long: sum over textures, counted by the cluster b of mask l, of T_kl[rho(b)][b].
+void fillRelativeCosts(const SeamTables& tables, int pair, const PermutationGroup& group, double* costs) {
+  for (int rho = 0; rho < group.order(); ++rho) {
+    costs[rho] = 0.0;
+    for (int b = 0; b < group.clusters(); ++b) costs[rho] += tables.entry(pair, group.image(rho, b), b);
+  }
+}
+
+/// result[y]: the smallest outer[x] + inner[rows(x)[y]] over x.
+template <typename Rows>
+void minimumOverOuter(const std::vector<double>& outer, const std::vector<double>& inner, const Rows& rows,
+                      std::vector<double>& result) {
+  const std::size_t order = outer.size();
+  std::fill(result.begin(), result.end(), std::numeric_limits<double>::infinity());
+  double* const results = result.data();
+  const double* const values = inner.data();
+  for (std::size_t x = 0; x < order; ++x) {
+    const std::uint8_t* row = rows(static_cast<int>(x));
+    const double own = outer[x];
+    for (std::size_t y = 0; y < order; ++y) {
+      const double sum = own + values[row[y]];
+      results[y] = sum < results[y] ? sum : results[y];
+    }
+  }
+}
+
+/// Smallest cost of the triangle by the relative permutation of one of its pairs, C! long: x of (k, l), y of (l, m) and
+/// x y of (k, m).
+void minMarginals(const CycleRelaxation::Triangle& triangle, int side, const PermutationGroup& group,
+                  std::vector<double>& result) {
+  const auto& [kl, lm, km] = triangle.costs;
+  if (side == 0) {
+    minimumOverOuter(
+        lm, km, [&](int y) { return group.after(y); }, result);
+  } else if (side == 1) {
+    minimumOverOuter(
+        kl, km, [&](int x) { return group.times(x); }, result);
+  } else {  // y = x^-1 (x y)
+    minimumOverOuter(
+        kl, lm, [&](int x) { return group.times(group.inverse(x)); }, result);
+  }
+  const auto& own = triangle.costs[static_cast<std::size_t>(side)];
+  for (std::size_t x = 0; x < result.size(); ++x) result[x] += own[x];
+}
+
+}  // namespace
+
+CycleRelaxation::CycleRelaxation(const SeamTables& tables, int max_triangles)
+    : masks_(tables.masks), group_(tables.clusters), pairs_(tables.pairs) {
+  const auto order = static_cast<std::size_t>(group_.order());
+  pair_costs_.resize(pairs_.size() * order);
+  scratch_.resize(order);
+  std::vector<int> pair_of(static_cast<std::size_t>(masks_) * static_cast<std::size_t>(masks_), -1);
+  for (std::size_t j = 0; j < pairs_.size(); ++j) {
+    fillRelativeCosts(tables, static_cast<int>(j), group_, pair_costs_.data() + j * order);
+    pair_of[static_cast<std::size_t>(pairs_[j].k * masks_ + pairs_[j].l)] = static_cast<int>(j);
+  }
+  beliefs_ = pair_costs_;
+  pairs_of_.resize(static_cast<std::size_t>(masks_));
+  for (int j = 0; j < static_cast<int>(pairs_.size()); ++j) {
+    pairs_of_[static_cast<std::size_t>(pairs_[static_cast<std::size_t>(j)].k)].push_back(j);
+    pairs_of_[static_cast<std::size_t>(pairs_[static_cast<std::size_t>(j)].l)].push_back(j);
+  }
+  keepTriangles(pair_of, max_triangles);
+
+  corners_.resize(pairs_.size());
+  for (int t = 0; t < static_cast<int>(triangles_.size()); ++t) {
+    for (int side = 0; side < 3; ++side) {
+      const int pair = triangles_[static_cast<std::size_t>(t)].pairs[static_cast<std::size_t>(side)];
+      corners_[static_cast<std::size_t>(pair)].push_back({t, side});
+    }
+  }
+}
+
+std::span<const double> CycleRelaxation::row(const std::vector<double>& values, int pair) const {
+  const auto order = static_cast<std::size_t>(group_.order());
+  return std::span(values).subspan(static_cast<std::size_t>(pair) * order, order);
+}
+
+/// How far the triangle's best consistent choice lies above its pairs' minima.
+double CycleRelaxation::gain(const Triangle& triangle) const {
+  Triangle whole = triangle;
+  double separate = 0.0;
+  for (std::size_t side = 0; side < 3; ++side) {
+    const auto costs = pairCosts(triangle.pairs[side]);
+    whole.costs[side].assign(costs.begin(), costs.end());
+    separate += lowest(costs);
+  }
+  std::vector<double> marginals(static_cast<std::size_t>(group_.order()));
+  minMarginals(whole, 0, group_, marginals);
+  return lowest(marginals) - separate;
+}
+
+void CycleRelaxation::keepTriangles(const std::vector<int>& pair_of, int max_triangles) {
+  std::vector<std::pair<double, Triangle>> candidates;
+  const auto pairOf = [&](int k, int l) { return pair_of[static_cast<std::size_t>(k * masks_ + l)]; };
+  for (int kl = 0; kl < static_cast<int>(pairs_.size()); ++kl) {
+    const auto [k, l] = pairs_[static_cast<std::size_t>(kl)];
+    for (int m = l + 1; m < masks_; ++m) {
+      const int lm = pairOf(l, m), km = pairOf(k, m);
+      if (lm < 0 || km < 0) continue;
+      Triangle triangle{.masks = {k, l, m}, .pairs = {kl, lm, km}, .costs = {}};
+      const double alone = gain(triangle);
+      candidates.emplace_back(alone, std::move(triangle));
+    }
+  }
+  // Each triangle costs time whether it helps or not; beyond several to a mask the bound rises no faster per second.
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  if (candidates.size() > static_cast<std::size_t>(max_triangles)) {
+    candidates.resize(static_cast<std::size_t>(max_triangles));
+  }
+  for (auto& [alone, triangle] : candidates) {
+    for (auto& costs : triangle.costs) costs.assign(static_cast<std::size_t>(group_.order()), 0.0);
+    triangles_.push_back(std::move(triangle));
+  }
+}
+
+void CycleRelaxation::visit(int pair, Direction direction) {
+  const auto order = static_cast<std::size_t>(group_.order());
+  const auto& corners = corners_[static_cast<std::size_t>(pair)];
+  double* costs = pair_costs_.data() + static_cast<std::size_t>(pair) * order;
+
+  // Collects from every triangle what it says of this pair. Its minimum is then zero whatever the pair chooses.
+  int forward = 0, backward = 0;
+  for (const auto& [t, side] : corners) {
+    Triangle& triangle = triangles_[static_cast<std::size_t>(t)];
+    minMarginals(triangle, side, group_, scratch_);
+    auto& own = triangle.costs[static_cast<std::size_t>(side)];
+    for (std::size_t x = 0; x < order; ++x) {
+      costs[x] += scratch_[x];
+      own[x] -= scratch_[x];
+    }
+    forward += side != kLastSide ? 1 : 0;
+    backward += side != kFirstSide ? 1 : 0;
+  }
+  std::copy_n(costs, order, beliefs_.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(pair) * order));
+
+  // Shares it out among the triangles that have pairs to come in this direction.
+  const int shares = std::max(forward, backward);
+  if (shares == 0) return;
+  std::vector<double>& share = scratch_;
+  for (std::size_t x = 0; x < order; ++x) share[x] = costs[x] / shares;
+  for (const auto& [t, side] : corners) {
+    if (side == (direction == Direction::kForward ? kLastSide : kFirstSide)) continue;
+    auto& own = triangles_[static_cast<std::size_t>(t)].costs[static_cast<std::size_t>(side)];
+    for (std::size_t x = 0; x < order; ++x) {
+      own[x] += share[x];
+      costs[x] -= share[x];
+    }
+  }
+}
+
+void CycleRelaxation::iterate() {
+  const int count = static_cast<int>(pairs_.size());
+  for (int pair = 0; pair < count; ++pair) visit(pair, Direction::kForward);
+  for (int pair = count - 1; pair >= 0; --pair) visit(pair, Direction::kBackward);
+}
+
+double CycleRelaxation::bound() const {
+  // Going back, the first pair of a triangle is visited last and leaves nothing in it: triangles' minima are zero.
+  double sum = 0.0;
+  for (int pair = 0; pair < static_cast<int>(pairs_.size()); ++pair) sum += lowest(pairCosts(pair));
+  return sum;
+}
+
+void CycleRelaxation::addConditional(std::span<const double> costs, int pair, int other, int label,
+                                     double* sums) const {
+  if (other == pairs_[static_cast<std::size_t>(pair)].k) {
+    const int inverse = group_.inverse(label);
+    for (int q = 0; q < group_.order(); ++q) sums[q] += costs[static_cast<std::size_t>(group_.product(q, inverse))];
+  } else {
+    const std::uint8_t* products = group_.times(label);
+    for (int q = 0; q < group_.order(); ++q) sums[q] += costs[products[group_.inverse(q)]];
+  }
+}
+
+std::vector<int> CycleRelaxation::decode(int first) const {
+  const auto order = static_cast<std::size_t>(group_.order());
+  std::vector<double> sums(static_cast<std::size_t>(masks_) * order, 0.0);  // towards the masks placed so far
+  std::vector<double> regret(static_cast<std::size_t>(masks_), 0.0);        // of the second best permutation
+  std::vector<int> labels(static_cast<std::size_t>(masks_), 0);             // the best
+  std::vector<bool> placed(static_cast<std::size_t>(masks_), false);
+  for (int next = first; next >= 0;) {
+    placed[static_cast<std::size_t>(next)] = true;
+    for (const int pair : pairsOf(next)) {
+      const auto other = static_cast<std::size_t>(across(pair, next));
+      if (placed[other]) continue;
+      double* sum = sums.data() + other * order;
+      addConditional(row(beliefs_, pair), pair, static_cast<int>(other), labels[static_cast<std::size_t>(next)], sum);
+      const auto [best, second] = lowestTwo({sum, order});
+      labels[other] = best;
+      regret[other] = sum[second] - sum[best];
+    }
+    next = -1;
+    for (int k = 0; k < masks_; ++k) {
+      if (placed[static_cast<std::size_t>(k)]) continue;
+      if (next < 0 || regret[static_cast<std::size_t>(k)] > regret[static_cast<std::size_t>(next)]) next = k;
+    }
+  }
+  return labels;
+}
+
+double pairwiseBound(const SeamTables& tables) {
+  double bound = 0.0;
+  for (int pair = 0; pair < static_cast<int>(tables.pairs.size()); ++pair) {
+    CostMatrix costs{};
+    for (int a = 0; a < tables.clusters; ++a) {
+      for (int b = 0; b < tables.clusters; ++b) {
+        costs[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)] = tables.entry(pair, a, b);
+      }
+    }
+    bound += assignmentCost(costs, bestAssignment(costs, tables.clusters), tables.clusters);
+  }
+  return bound;
+}
+
+}  // namespace facezip::compress

@@ -1,21 +1,22 @@
 // The pictures of the README, from `facezip view` in Chromium: node pictures.mjs FACEZIP CHROMIUM PACKAGE OUTPUT
 import { spawn } from 'node:child_process';
 import { join } from 'node:path';
-import { chromium } from 'playwright-core';
+import { launch } from './common.mjs';
 
 const [facezip, browserPath, packagePath, output] = process.argv.slice(2);
 const server = spawn(facezip, ['view', packagePath, '--port', '0'], { stdio: ['ignore', 'pipe', 'inherit'] });
 const url = String(await new Promise((resolve) => server.stdout.once('data', resolve))).match(/http:\S+/)[0];
-const browser = await chromium.launch({ executablePath: browserPath,
-  args: ['--no-sandbox', '--use-angle=swiftshader', '--use-gl=angle', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'] });
-const page = await browser.newPage({ viewport: { width: 760, height: 520 } });
+const browser = await launch(browserPath);
+const page = await browser.newPage({ viewport: { width: 840, height: 660 }, deviceScaleFactor: 1.5 });
 await page.goto(url);
 await page.evaluate(() => globalThis.facezip.ready);
+await page.addStyleTag({ content: '#stats { visibility: hidden }' });  // of software rendering
 async function shoot(name, mode, weights) {
   await page.selectOption('#mode', mode);
   await page.evaluate((byName) => globalThis.facezip.setWeights(byName), weights);
   await page.waitForFunction(() => globalThis.facezip.settled);
-  await page.screenshot({ path: join(output, `${name}.jpg`), type: 'jpeg', quality: 82 });
+  // The head alone: sliders would be too small to read.
+  await page.screenshot({ path: join(output, `${name}.jpg`), type: 'jpeg', quality: 82, clip: { x: 80, y: 85, width: 360, height: 460 } });
 }
 await shoot('neutral', 'shaded', {});
 await shoot('expression', 'shaded', { disgust_nose_sneer: 0.8, brow_raise: 0.6 });

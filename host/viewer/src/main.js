@@ -2,9 +2,9 @@
 import { PackageTextures, memory } from './blend.js';
 import { readClip } from './clip.js';
 import { cellGains, fromPreset, toPreset, unitGains } from './gains.js';
-import { maskPicture, shadedMaterial, viewMaterial } from './materials.js';
+import { legends, maskPicture, shadedMaterial, viewMaterial } from './materials.js';
 import { readDescription, readMasks } from './package.js';
-import { byId, download, fail, filterRows, note, onFile, options, slider } from './panel.js';
+import { byId, download, fail, filterRows, note, onFile, options, showLegend, slider } from './panel.js';
 import { HeadScene } from './scene.js';
 
 const modes = { shaded: 'shaded', texture: 'one map', neutral: 'its neutral', difference: 'one difference texture',
@@ -170,6 +170,8 @@ class Viewer {
   showMode() {
     const mode = byId('mode').value;
     const map = this.textures.maps[byId('map').selectedIndex];
+    byId('detail-row').hidden = mode !== 'shaded' || !this.textures.maps.some((each) => each.name.toLowerCase().includes('normal'));
+    showLegend(legends[mode]);
     byId('map-row').hidden = ['shaded', 'masks', 'regions'].includes(mode);
     byId('layer-row').hidden = !['difference', 'weights'].includes(mode);
     this.uniforms.layer.value = Number(byId('layer').value);
@@ -188,7 +190,10 @@ class Viewer {
   }
 
   resize() {
-    this.head.resize(byId('panel').getBoundingClientRect().width);
+    const panel = byId('panel').getBoundingClientRect();
+    // Beside the panel, or above it where it spans the window.
+    if (panel.left > 0) this.head.resize(panel.left, window.innerHeight);
+    else this.head.resize(window.innerWidth, panel.top);
     this.changed = true;
   }
 

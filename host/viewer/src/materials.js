@@ -76,6 +76,12 @@ const colours = `
     return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);
   }`;
 
+/** What the colours of a view mean: the scales of `colours`. */
+export const legends = {
+  weights: { least: '-1', colours: 'linear-gradient(90deg, rgb(26 51 204), #fff, rgb(204 38 13))', most: '1' },
+  change: { least: '0', colours: 'linear-gradient(90deg, #000, #f00, #ff0, #fff)', most: '60/255' },
+};
+
 /** Unlit: one of `views`, of one map. */
 export function viewMaterial(textures, map, view, uniforms) {
   const material = new THREE.MeshBasicMaterial({ side: THREE.DoubleSide, toneMapped: false });

@@ -32,6 +32,14 @@ export function filterRows(rows, text) {
   for (const { row, name } of rows) row.hidden = !name.toLowerCase().includes(wanted);
 }
 
+/** Says what the colours of a view mean; null: nothing to say. */
+export function showLegend(legend) {
+  byId('legend').hidden = !legend;
+  if (!legend) return;
+  const [least, bar, most] = byId('legend').children;
+  [least.textContent, bar.style.background, most.textContent] = [legend.least, legend.colours, legend.most];
+}
+
 /** Covers the page: nothing can be shown. */
 export function fail(text) {
   const message = byId('message');

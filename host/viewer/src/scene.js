@@ -76,12 +76,11 @@ export class HeadScene {
     if (this.head) this.head.material = material;
   }
 
-  /** Fits the canvas, less the width that the panel covers. */
-  resize(covered) {
-    const width = Math.max(64, window.innerWidth - covered);
+  /** Fits the canvas to what the panel leaves of the window. */
+  resize(width, height) {
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
-    this.renderer.setSize(width, window.innerHeight);
-    this.camera.aspect = width / window.innerHeight;
+    this.renderer.setSize(Math.max(64, width), Math.max(64, height));
+    this.camera.aspect = this.renderer.domElement.width / this.renderer.domElement.height;
     this.camera.updateProjectionMatrix();
   }
 

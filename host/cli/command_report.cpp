@@ -33,6 +33,15 @@ std::string readText(const std::string& file) {
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
+/// Pixels of the pictures: as many as keep the page below 30 MB or so.
+int pictureSide(std::size_t pictures) {
+  constexpr std::size_t kMostPixels = 48 * 384 * 384;
+  for (const int side : {512, 384, 256, 192}) {
+    if (pictures * static_cast<std::size_t>(side * side) <= kMostPixels) return side;
+  }
+  return 128;
+}
+
 void report(const Arguments& arguments, Progress& progress) {
   if (std::filesystem::path(arguments.output).extension() != ".html") {
     throw InputError({"--output", "", "a file name that ends in .html", arguments.output, ""});
@@ -42,9 +51,13 @@ void report(const Arguments& arguments, Progress& progress) {
   options.blends = 0;
   options.pictures = true;
   options.picture_map = arguments.map;
+  options.pictures_of_all_maps = true;
+  options.picture_baselines = false;
   options.mask_sweep = arguments.mask_sweep;
   options.memory_bytes = parseBytes("--memory", arguments.memory);
   const Package package = Package::open(arguments.package);
+  options.picture_side =
+      pictureSide(package.expressions().size() * (arguments.map.empty() ? package.maps().size() : 1));
   const Device device = openDevice(arguments.device, &progress);
   const Evaluation evaluation = evaluatePackage(openCapture(arguments.capture), package, options, device, progress);
   writeHtmlReport(arguments.output, package, evaluation, {device.info().name, compressed});
@@ -60,7 +73,7 @@ void addReportCommand(CLI::App& app, const CommonOptions& common) {
   command->add_option("capture", arguments->capture, "Directory of the capture")->required()->type_name("CAPTURE");
   command->add_option("package", arguments->package, "Directory of the package")->required()->type_name("PACKAGE");
   command->add_option("-o,--output", arguments->output, "File of the page")->required()->type_name("FILE.html");
-  command->add_option("--map", arguments->map, "Map of the pictures (default: the first)")->type_name("NAME");
+  command->add_option("--map", arguments->map, "Map of the pictures (default: all)")->type_name("NAME");
   command
       ->add_option("--mask-sweep", arguments->mask_sweep,
                    "Numbers of masks to compress with and to plot: 8,16,32,64. Two compressions each")

@@ -59,14 +59,14 @@ void drawLegend(Sheet& sheet, const ErrorPictures& pictures) {
 
 const Evaluation::Map& mapOf(const Evaluation& evaluation) {
   return *std::find_if(evaluation.maps.begin(), evaluation.maps.end(),
-                       [&](const Evaluation::Map& map) { return map.name == evaluation.pictures->map; });
+                       [&](const Evaluation::Map& map) { return map.name == evaluation.pictures.front().map; });
 }
 
 }  // namespace
 
 void writeErrorSheet(const std::filesystem::path& file, const Evaluation& evaluation) {
-  assert(evaluation.pictures.has_value());
-  const ErrorPictures& pictures = *evaluation.pictures;
+  assert(!evaluation.pictures.empty());
+  const ErrorPictures& pictures = evaluation.pictures.front();
   const auto methods = static_cast<int>(pictures.methods.size());
   // The legend needs its width even above the thumbnails of a tiny map.
   const int columns = std::max(1 + 2 * methods, (kBarWidth + Sheet::gap()) / (pictures.width + Sheet::gap()) + 1);

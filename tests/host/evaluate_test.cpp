@@ -229,8 +229,8 @@ TEST_F(Evaluating, PicturesShowWhatWasCapturedAndDecoded) {
   options.pictures = true;
   options.picture_map = "normal";
   const Evaluation evaluation = evaluate(package, options);
-  ASSERT_TRUE(evaluation.pictures.has_value());
-  const ErrorPictures& pictures = *evaluation.pictures;
+  ASSERT_EQ(evaluation.pictures.size(), 1u);
+  const ErrorPictures& pictures = evaluation.pictures.front();
   EXPECT_EQ(pictures.map, "normal");
   EXPECT_EQ(pictures.width, 80);
   EXPECT_EQ(pictures.methods, (std::vector<std::string>{"package", "pca4"}));
@@ -253,14 +253,27 @@ TEST_F(Evaluating, PicturesShowWhatWasCapturedAndDecoded) {
   }
 }
 
+TEST_F(Evaluating, PicturesOfAllMapsInTheSizeAskedForWithoutBaselines) {
+  const Package package = compress({.expressions = 2, .maps = {"albedo", "normal"}});
+  EvaluateOptions options = quickOptions();
+  options.pictures = options.pictures_of_all_maps = true;
+  options.picture_baselines = false;
+  options.picture_side = 40;
+  const Evaluation evaluation = evaluate(package, options);
+  ASSERT_EQ(evaluation.pictures.size(), 2u);
+  EXPECT_EQ(evaluation.pictures[1].map, "normal");
+  EXPECT_EQ(evaluation.pictures[1].width, 40);
+  EXPECT_EQ(evaluation.pictures[1].methods, std::vector<std::string>{"package"});
+}
+
 TEST_F(Evaluating, PicturesOfLargeMapsAreAverages) {
   const Package package = compress({.expressions = 2, .width = 600, .height = 300, .channels = 1});
   EvaluateOptions options = quickOptions();
   options.pictures = true;
   const Evaluation evaluation = evaluate(package, options);
-  EXPECT_EQ(evaluation.pictures->width, 256);
-  EXPECT_EQ(evaluation.pictures->height, 128);
-  EXPECT_EQ(evaluation.pictures->images[0][0].size(), 256u * 128 * 3);
+  EXPECT_EQ(evaluation.pictures.front().width, 256);
+  EXPECT_EQ(evaluation.pictures.front().height, 128);
+  EXPECT_EQ(evaluation.pictures.front().images[0][0].size(), 256u * 128 * 3);
   options.picture_map = "roughness";
   EXPECT_THROW(evaluate(package, options), InputError);
 }

@@ -237,10 +237,10 @@ await run('the report shows plots, pictures and sliders without a network', asyn
   const report = await openPage(browser, pathToFileURL(join(packages, 'report.html')).href);
   assert.ok(await report.locator('svg.plot path').count() > 8);
   const images = await report.locator('img').evaluateAll((all) => all.map((image) => image.naturalWidth));
-  assert.ok(images.length > 3 * names.length && images.every((width) => width > 0), `${images}`);
+  assert.ok(images.length > 3 * names.length * description.maps.length && images.every((width) => width > 0), `${images}`);
   await report.locator('.expression input').first().fill('80');
   assert.match(await report.locator('.pair .over').first().getAttribute('style'), /80%/);
-  for (const heading of ['Quality and memory', 'Convergence of the permutation search', 'Error against the number of masks: albedo']) {
+  for (const heading of ['Quality and memory', 'Expressions: albedo, captured and decoded', 'Expressions: normal, captured and decoded', 'Convergence of the permutation search', 'Error against the number of masks: albedo']) {
     assert.equal(await report.getByRole('heading', { name: heading }).count(), 1, heading);
   }
   await report.screenshot({ path: join(work, 'report.png'), fullPage: true });

@@ -39,7 +39,10 @@ struct EvaluateOptions {
   int blends = 16;  ///< R, random weight vectors to blend; 0: none
   /// Collects small images of every expression and of its errors, for a picture: Evaluation::pictures.
   bool pictures = false;
-  std::string picture_map = "";  ///< of this map; "": the first of the package
+  std::string picture_map = "";       ///< of this map; "": the first of the package, or every map
+  bool pictures_of_all_maps = false;  ///< where no picture_map is named
+  bool picture_baselines = true;      ///< also by the paper's method and PCA(4), where these are measured
+  int picture_side = 256;             ///< pixels along the longer side; fewer where memory would not do
   std::uint64_t memory_bytes = 2ull << 30;
 };
 
@@ -81,7 +84,7 @@ struct BlendErrors {
 /// Small images of one map of every expression, for a picture.
 struct ErrorPictures {
   std::string map;
-  int width = 0;  ///< pixels, at most 256
+  int width = 0;  ///< pixels, at most EvaluateOptions::picture_side
   int height = 0;
   std::vector<std::string> methods;  ///< "package", then of "paper" and "pca4" what was asked for
   double scale = 0.0;                ///< the largest p99 of the methods, in 1/255: where an error scale should end
@@ -131,7 +134,7 @@ struct Evaluation {
   std::map<std::string, std::map<int, std::uint64_t>> ablation_bytes;
   /// R weight vectors that were blended, N values each, in the package's order.
   std::vector<std::vector<float>> blend_weights;
-  std::optional<ErrorPictures> pictures;
+  std::vector<ErrorPictures> pictures;                  ///< one for each map that was asked for
   std::optional<PermutationSearch> search;              ///< where a baseline that permutes was compressed
   std::vector<MaskSweepPoint> mask_sweep;               ///< as asked for
   std::vector<std::pair<std::string, double>> seconds;  ///< wall time of each stage

@@ -10,10 +10,9 @@
 namespace facezip::evaluate {
 namespace {
 
-constexpr int kLargestSide = 256;
 constexpr int kSmallestSide = 64;
 /// The images of all expressions and methods stay in memory until the picture is drawn.
-constexpr std::uint64_t kMostBytes = std::uint64_t{96} << 20;
+constexpr std::uint64_t kMostBytes = std::uint64_t{224} << 20;
 constexpr std::size_t kColours = 3;
 
 std::uint64_t pictureBytes(int width, int height, int expressions, std::size_t methods) {
@@ -26,14 +25,14 @@ std::uint64_t pictureBytes(int width, int height, int expressions, std::size_t m
 }  // namespace
 
 PictureCollector::PictureCollector(std::string map, const image::ImageShape& shape, int expressions,
-                                   std::vector<int> decoded, std::vector<std::string> methods)
+                                   std::vector<int> decoded, std::vector<std::string> methods, int side)
     : map_(std::move(map)),
       map_shape_(shape),
       expressions_(expressions),
       decoded_(std::move(decoded)),
       methods_(std::move(methods)) {
   const int longest = std::max(shape.width, shape.height);
-  for (int side = std::min(kLargestSide, longest);; side /= 2) {
+  for (side = std::min(side, longest);; side /= 2) {
     width_ = std::max(1, static_cast<int>(static_cast<long>(shape.width) * side / longest));
     height_ = std::max(1, static_cast<int>(static_cast<long>(shape.height) * side / longest));
     if (bytes() <= kMostBytes || side <= kSmallestSide) break;

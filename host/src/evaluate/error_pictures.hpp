@@ -18,8 +18,9 @@ class PictureCollector {
  public:
   /// decoded  for each decoder of the measurement, the column of the picture that it fills, -1 for none
   /// methods  of the columns; "pca4" last, where wanted
+  /// side     pixels along the longer side, at most
   PictureCollector(std::string map, const image::ImageShape& shape, int expressions, std::vector<int> decoded,
-                   std::vector<std::string> methods);
+                   std::vector<std::string> methods, int side);
 
   /// Bytes that the images of such a map take.
   std::uint64_t bytes() const;

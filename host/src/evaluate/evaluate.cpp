@@ -147,7 +147,9 @@ class Evaluator {
     MapSet maps = openMaps(subject_);
     for (std::size_t m = 0; m < maps.maps.size(); ++m) {
       std::optional<PictureCollector> pictures;
-      if (options_.pictures && static_cast<int>(m) == picture_map_) pictures.emplace(collectorOf(maps.maps[m]));
+      const bool all = options_.pictures_of_all_maps && options_.picture_map.empty();
+      if (options_.pictures && (all || static_cast<int>(m) == picture_map_))
+        pictures.emplace(collectorOf(maps.maps[m]));
       const MapPass pass = measureMap(maps.maps[m], static_cast<int>(m), pictures ? &*pictures : nullptr);
       addMap(maps.maps[m], pass);
       if (pictures) finishPictures(maps.maps[m], pass, *pictures);
@@ -243,18 +245,19 @@ class Evaluator {
     std::vector<int> columns;
     std::vector<std::string> methods;
     for (const Candidate& candidate : candidates_) {
-      const bool shown = candidate.method == "package" || candidate.method == "paper";
+      const bool shown = candidate.method == "package" || (options_.picture_baselines && candidate.method == "paper");
       columns.push_back(shown ? static_cast<int>(methods.size()) : -1);
       if (shown) methods.push_back(candidate.method);
     }
-    if (options_.pca4) methods.emplace_back("pca4");
-    return {map.source->name, map.samples->shape(), subject_.expressions(), columns, methods};
+    if (options_.picture_baselines && options_.pca4) methods.emplace_back("pca4");
+    return {map.source->name, map.samples->shape(), subject_.expressions(), columns, methods, options_.picture_side};
   }
 
   // PCA's components are known only now: its errors take another pass over the map.
   void finishPictures(OpenMap& map, const MapPass& pass, PictureCollector& pictures) {
     double largest_p99 = 0.0;
     for (const char* method : {"package", "paper"}) {
+      if (!options_.picture_baselines && method != std::string_view("package")) continue;
       const auto found = evaluation_.maps.back().detail.find(method);
       if (found != evaluation_.maps.back().detail.end()) largest_p99 = std::max(largest_p99, found->second.pooled.p99);
     }
@@ -270,7 +273,7 @@ class Evaluator {
         subject_.progress.advance(static_cast<std::size_t>(band.end));
       });
     }
-    evaluation_.pictures = pictures.finish(largest_p99, projector);
+    evaluation_.pictures.push_back(pictures.finish(largest_p99, projector));
   }
 
   void countBytes() {

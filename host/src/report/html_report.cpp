@@ -120,20 +120,24 @@ image::Image maskPicture(const Package& package) {
   return fromValues(masks.tile_width, masks.tile_height, 3, values);
 }
 
-json picturesJson(const Package& package, const Evaluation& evaluation, const Pictures& pictures) {
-  const ErrorPictures& collected = *evaluation.pictures;
-  json images = {{"map", collected.map},
-                 {"scale", collected.scale},
-                 {"expressions", json::array()},
-                 {"textures", json::array()},
-                 {"weights", json::array()}};
+/// Captured, decoded and error of every expression.
+json comparisonJson(const ErrorPictures& collected, const Pictures& pictures) {
+  json comparison = {{"map", collected.map}, {"scale", collected.scale}, {"expressions", json::array()}};
   for (std::size_t n = 0; n < collected.images.size(); ++n) {
     const auto face = [&](std::size_t i) {
       return pictures.uri(fromValues(collected.width, collected.height, 3, collected.images[n][i]));
     };
-    images["expressions"].push_back({{"captured", face(0)},
-                                     {"decoded", face(1)},
-                                     {"error", pictures.uri(errorPicture(collected, collected.errors[n][0]))}});
+    comparison["expressions"].push_back({{"captured", face(0)},
+                                         {"decoded", face(1)},
+                                         {"error", pictures.uri(errorPicture(collected, collected.errors[n][0]))}});
+  }
+  return comparison;
+}
+
+json picturesJson(const Package& package, const Evaluation& evaluation, const Pictures& pictures) {
+  json images = {{"maps", json::array()}, {"textures", json::array()}, {"weights", json::array()}};
+  for (const ErrorPictures& collected : evaluation.pictures) {
+    images["maps"].push_back(comparisonJson(collected, pictures));
   }
   const auto add = [&](const char* where, const std::string& title, const std::string& file) {
     images[where].push_back({{"title", title}, {"src", pictures.uri(thumbnail(package.directory() / file))}});
@@ -182,7 +186,7 @@ std::string forScript(const json& data) {
 
 void writeHtmlReport(const fs::path& file, const Package& package, const Evaluation& evaluation,
                      const HtmlReportOptions& options) {
-  assert(evaluation.pictures.has_value());
+  assert(!evaluation.pictures.empty());
   const Pictures pictures(fs::temp_directory_path() / "facezip-report");
   json data = {{"evaluation", json::parse(toJson(evaluation))},
                {"package", json::parse(package::packageJson(package.description()))},

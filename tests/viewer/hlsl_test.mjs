@@ -1,0 +1,130 @@
+// What the exports for Unity and Unreal compute: their HLSL by glslang and SPIRV-Cross as WebGL 2, drawn in Chromium.
+//   node hlsl_test.mjs FACEZIP CHROMIUM GLSLANG SPIRV_CROSS PACKAGES WORK_DIRECTORY
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { decode } from 'fast-png';
+import { blendDifference, launch, openPage, results, run } from './common.mjs';
+
+const [facezip, browserPath, glslang, spirvCross, packages, work] = process.argv.slice(2);
+rmSync(work, { recursive: true, force: true });
+mkdirSync(work, { recursive: true });
+
+/** HLSL of a shader that writes T of a map at texel centres, as each engine's file computes it. */
+const shaders = {
+  unity: (folder, node, { width, height }) => `#include "FaceZip.hlsl"
+float4 main(float4 place : SV_Position) : SV_Target {
+  float4 value;
+  FaceZip_${node.map}_float(place.xy / float2(${width}.0, ${height}.0), value);
+  return value;
+}`,
+  unreal: (folder, node, { width, height }, count) => `${readFileSync(join(folder, 'FaceZip.ush'))}
+${node.textures.map((name) => `Texture2D<float4> ${name};`).join('\n')}
+SamplerState state;
+float fz_given[${count}];
+float4 main(float4 place : SV_Position) : SV_Target {
+  FaceZipBlend face;
+  for (int n = 0; n < ${count}; ++n) face.fz_beta[n] = fz_given[n];
+  return face.facezip_${node.map}(place.xy / float2(${width}.0, ${height}.0), state, ${node.textures.join(', ')});
+}`,
+};
+
+function toGlsl(folder, name, hlsl) {
+  const file = join(folder, name);
+  writeFileSync(`${file}.hlsl`, hlsl);
+  execFileSync(glslang, ['-D', '-e', 'main', '-S', 'frag', '-V', '--auto-map-bindings', '--auto-map-locations', '-o', `${file}.spv`, `${file}.hlsl`],
+    { stdio: ['ignore', 'ignore', 'inherit'] });
+  return execFileSync(spirvCross, [`${file}.spv`, '--es', '--version', '300'], { encoding: 'utf8' });
+}
+
+/** RGBA bytes as importers make them: gray in three channels. Rows from the top, or from the bottom as Unity has them. */
+function readTexture(file, fromBottom) {
+  const { width, height, channels, data } = decode(readFileSync(file));
+  const rgba = Buffer.alloc(4 * width * height, 255);
+  for (let y = 0; y < height; ++y) {
+    for (let x = 0; x < width; ++x) {
+      const from = ((fromBottom ? height - 1 - y : y) * width + x) * channels;
+      const to = 4 * (y * width + x);
+      for (let c = 0; c < 3; ++c) rgba[to + c] = data[from + (channels < 3 ? 0 : c)];
+      if (channels === 2 || channels === 4) rgba[to + 3] = data[from + channels - 1];
+    }
+  }
+  return { width, height, text: rgba.toString('latin1') };
+}
+
+/** In the page: draws the shader, reads its pixels, row 0 first as gl_FragCoord counts. */
+function draw({ glsl, textures, weights, width, height }) {
+  const gl = new OffscreenCanvas(width, height).getContext('webgl2', { premultipliedAlpha: false });
+  const program = gl.createProgram();
+  const vertex = '#version 300 es\nvoid main() { gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1, 0, 1); }';
+  for (const [type, source] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, glsl]]) {
+    const shader = gl.createShader(type);
+    gl.shaderSource(shader, source);
+    gl.compileShader(shader);
+    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
+    gl.attachShader(program, shader);
+  }
+  gl.linkProgram(program);
+  if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
+  gl.useProgram(program);
+  const bytes = (text) => Uint8Array.from(text, (c) => c.charCodeAt(0));
+  Object.entries(textures).forEach(([name, texture], unit) => {
+    gl.activeTexture(gl.TEXTURE0 + unit);
+    gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, texture.width, texture.height, 0, gl.RGBA, gl.UNSIGNED_BYTE, bytes(texture.text));
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+    // SPIRV-Cross names what it combines after texture and sampler.
+    const found = glsl.match(new RegExp(`SPIRV_Cross_Combined${name}(?!\\d)\\w+`));
+    if (!found) throw new Error(`${name} is not read`);
+    gl.uniform1i(gl.getUniformLocation(program, found[0]), unit);
+  });
+  // std140: every float of an array takes 16 bytes.
+  gl.uniformBlockBinding(program, gl.getUniformBlockIndex(program, '_Global'), 0);
+  gl.bindBufferBase(gl.UNIFORM_BUFFER, 0, gl.createBuffer());
+  gl.bufferData(gl.UNIFORM_BUFFER, Float32Array.from({ length: 4 * weights.length }, (_, i) => (i % 4 ? 0 : weights[i / 4])), gl.STATIC_DRAW);
+  gl.viewport(0, 0, width, height);
+  gl.drawArrays(gl.TRIANGLES, 0, 3);
+  const pixels = new Uint8Array(4 * width * height);
+  gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+  return Array.from(pixels, (byte) => String.fromCharCode(byte)).join('');
+}
+
+const browser = await launch(browserPath);
+const page = await openPage(browser, 'about:blank');
+for (const name of ['head', 'many']) {
+  const packagePath = join(packages, name);
+  const description = JSON.parse(readFileSync(join(packagePath, 'package.json')));
+  const names = description.expressions;
+  const unreal = join(work, `${name}_unreal`);
+  execFileSync(facezip, ['export', packagePath, '--target', 'unreal', '--output', unreal]);
+  const { nodes } = JSON.parse(readFileSync(join(unreal, 'FaceZip.json')));
+  for (const target of Object.keys(shaders)) {
+    await run(`${target}, ${name}: HLSL computes what facezip blend does`, async () => {
+      const folder = join(work, `${name}_${target}`);
+      if (target !== 'unreal') execFileSync(facezip, ['export', packagePath, '--target', target, '--output', folder]);
+      const fromBottom = target === 'unity';
+      const prepared = description.maps.map((map, i) => ({
+        glsl: toGlsl(folder, `run_${map.name}`, shaders[target](folder, nodes[i], map, names.length)),
+        textures: Object.fromEntries(nodes[i].textures.map((file) => [file, readTexture(join(folder, 'textures', `${file}.png`), fromBottom)])),
+      }));
+      const bake = async (from, weights, i) => {
+        const { width, height } = description.maps[i];
+        const text = await from.evaluate(draw, { ...prepared[i], width, height, weights: names.map((each) => weights[each] ?? 0) });
+        if (!fromBottom) return text;
+        return Array.from({ length: height }, (_, y) => text.slice(4 * width * (height - 1 - y), 4 * width * (height - y))).join('');
+      };
+      for (const weights of [{}, { [names[1]]: 0.7, [names.at(-1)]: 0.4 }]) {
+        const largest = await blendDifference({ facezip, packagePath, description, work }, page, bake, weights);
+        console.log(`  largest difference ${largest}/255`);
+        assert.ok(largest <= (Object.keys(weights).length ? 1.5 : 0), `${largest}/255`);
+      }
+      const still = (from, _, i) => bake(from, {}, i);
+      assert.ok(await blendDifference({ facezip, packagePath, description, work }, page, still, { [names[1]]: 0.7 }) > 4, 'the weights matter');
+    });
+  }
+}
+await run('no console errors', () => assert.deepEqual(page.errors, []));
+await browser.close();
+process.exit(results.failed ? 1 : 0);

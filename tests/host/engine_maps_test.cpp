@@ -36,7 +36,7 @@ TEST(EngineMaps, HaveRolesAndNamesThatShadersTake) {
   const std::vector<EngineMap> maps = exporting::engineMaps(awkwardPackage(folder / "package", 4));
   ASSERT_EQ(maps.size(), 4u) << "floats are left out";
   EXPECT_EQ(maps[0].id, "Albedo_1");
-  EXPECT_EQ(maps[1].id, "albedo_1");
+  EXPECT_EQ(maps[1].id, "albedo_1_2") << "files whose names differ by more than case";
   EXPECT_EQ(maps[2].id, "map_2_normals");
   EXPECT_EQ(maps[0].role, MapRole::kAlbedo);
   EXPECT_EQ(maps[1].role, MapRole::kOther) << "the first has the role";

@@ -21,7 +21,8 @@ std::string lowerCase(std::string text) {
   return text;
 }
 
-/// Letters, digits and single underscores, a letter first: what GLSL, HLSL and C# take.
+/// Letters, digits and single underscores, a letter first: what GLSL, HLSL and C# take. Unique on file systems that
+/// ignore case too, and never like the files of weights.
 std::string identifier(const std::string& name, const std::set<std::string>& taken) {
   std::string id;
   for (const char c : name) {
@@ -30,9 +31,10 @@ std::string identifier(const std::string& name, const std::set<std::string>& tak
     if (!plain && !id.empty() && id.back() != '_') id += '_';
   }
   while (!id.empty() && id.back() == '_') id.pop_back();
-  if (id.empty() || std::isalpha(static_cast<unsigned char>(id[0])) == 0) id = id.empty() ? "map" : "map_" + id;
+  if (id.empty()) id = "map";
+  if (std::isalpha(static_cast<unsigned char>(id[0])) == 0 || lowerCase(id).starts_with("weights")) id = "map_" + id;
   std::string unique = id;
-  for (int i = 2; taken.contains(unique); ++i) unique = fmt::format("{}_{}", id, i);
+  for (int i = 2; taken.contains(lowerCase(unique)); ++i) unique = fmt::format("{}_{}", id, i);
   return unique;
 }
 
@@ -85,7 +87,7 @@ std::vector<EngineMap> engineMaps(const Package& package) {
   for (const PackageMap& map : package.maps()) {
     if (map.sample_type == SampleType::kFloat32) continue;
     EngineMap engine{identifier(map.name, taken), map, roleOf(map.name, maps), {}};
-    taken.insert(engine.id);
+    taken.insert(lowerCase(engine.id));
     for (const PackageDifference& difference : map.differences) {
       engine.differences.push_back(engineDifference(map, difference));
     }

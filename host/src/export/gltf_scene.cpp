@@ -65,8 +65,6 @@ class Accessors {
     }
     tinygltf::Accessor accessor = describe(values, 3, with_bounds);
     accessor.sparse.isSparse = true;
-    accessor.sparse.indices.byteOffset = 0;  // tinygltf leaves both uninitialised
-    accessor.sparse.values.byteOffset = 0;
     accessor.sparse.count = static_cast<int>(indices.size());
     // tinygltf leaves these as they were in memory, and writes them.
     accessor.sparse.indices.byteOffset = 0;

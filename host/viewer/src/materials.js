@@ -17,6 +17,9 @@ const tangentFrame = `
 
 const toLinear = 'vec3 fz_linear(vec3 c) { return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, vec3(lessThanEqual(c, vec3(0.04045)))); }';
 
+// Eyes and mouth are holes: what is seen through them is dark.
+const inside = 'if (!gl_FrontFacing) diffuseColor.rgb *= 0.04;';
+
 /** Gives a material of three.js a varying with UVs, whatever textures it has. */
 function withUvs(shader) {
   shader.vertexShader = shader.vertexShader
@@ -44,7 +47,8 @@ export function shadedMaterial(textures, uniforms) {
         uniform bool detail;
         ${blendHeader(textures.differences)} ${tangentFrame} ${toLinear}
         ${albedo.source('albedo')} ${normal?.source('normal') ?? ''} ${roughness?.source('roughness') ?? ''}`)
-      .replace('#include <map_fragment>', 'diffuseColor.rgb = fz_linear(clamp(albedo_value(fz_uv).rgb, 0.0, 1.0));');
+      .replace('#include <map_fragment>', `diffuseColor.rgb = fz_linear(clamp(albedo_value(fz_uv).rgb, 0.0, 1.0));
+        ${inside}`);
     if (normal) {
       shader.fragmentShader = shader.fragmentShader.replace('#include <normal_fragment_maps>', `
         if (detail) normal = fz_perturb(-vViewPosition, normal, fz_uv, normal_value(fz_uv).xyz * 2.0 - 1.0);`);
@@ -95,7 +99,8 @@ export function viewMaterial(textures, map, view, uniforms) {
         uniform int layer;
         ${view === 'picture' ? 'uniform sampler2D picture;' : ''}
         ${blendHeader(textures.differences)} ${colours} ${map.source('map')}`)
-      .replace('#include <map_fragment>', `diffuseColor.rgb = ${expression};`)
+      .replace('#include <map_fragment>', `diffuseColor.rgb = ${expression};
+        ${inside}`)
       .replace('#include <colorspace_fragment>', '');  // the values themselves
   };
   material.customProgramCacheKey = () => `${map.name} ${view}`;

@@ -32,7 +32,9 @@ export class HeadScene {
     gltf.scene.traverse((node) => { if (node.isMesh) this.head = node; });
     this.scene.add(this.head);
     const { geometry } = this.head;
-    geometry.computeBoundingSphere();
+    // Of the neutral: three.js adds up the reach of all morph targets.
+    this.bounds = new THREE.Box3().setFromBufferAttribute(geometry.attributes.position);
+    this.head.frustumCulled = false;
     const count = geometry.attributes.position.count;
     const targets = geometry.morphAttributes.position?.length ?? 0;
     memory.bytes += count * 32 + (geometry.index?.count ?? 0) * 4 + count * 32 * targets;  // morphs: RGBA32F, normals too
@@ -56,15 +58,18 @@ export class HeadScene {
     this.frame();
   }
 
+  /** Looks from the front, so near that the head fits however it turns. */
   frame() {
-    const { center, radius } = this.flat
-      ? { center: new THREE.Vector3(), radius: 0.56 }
-      : this.head.geometry.boundingSphere;
+    const box = this.flat ? new THREE.Box3().setFromObject(this.sheet) : this.bounds;
+    const center = box.getCenter(new THREE.Vector3());
+    const half = box.getSize(new THREE.Vector3()).multiplyScalar(0.5);
+    const around = Math.hypot(half.x, half.z);
+    const slope = Math.tan((this.camera.fov * Math.PI) / 360);
+    const distance = 1.08 * Math.max(half.y / slope, around / (slope * this.camera.aspect)) + half.z;
     this.controls.target.copy(center);
-    const half = Math.tan((this.camera.fov * Math.PI) / 360) * Math.min(1, this.camera.aspect);
-    this.camera.position.copy(center).add(new THREE.Vector3(0, 0, (1.05 * radius) / half));
-    this.camera.near = radius / 100;
-    this.camera.far = radius * 100;
+    this.camera.position.copy(center).add(new THREE.Vector3(0, 0, distance));
+    this.camera.near = distance / 100;
+    this.camera.far = distance * 100;
     this.camera.updateProjectionMatrix();
     this.controls.update();
   }

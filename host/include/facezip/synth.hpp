@@ -24,7 +24,8 @@ struct SynthOptions {
   /// Chooses skin, proportions, crease pattern and how strongly each expression is performed.
   std::uint64_t seed = 1;
   /// Also write OUTPUT/template: another head (neutral.obj) performing every single action (NAME.obj), what `rig`
-  /// takes. Expression 21 and those after it are the subject's own single actions, under the same names.
+  /// takes, and OUTPUT/weights.json: how strongly each expression performs them. Expression 21 and those after it are
+  /// the subject's own single actions, under the same names.
   bool rig_template = false;
 };
 

@@ -88,6 +88,15 @@ void writeManifest(const fs::path& folder, const SynthOptions& options, const st
   io::writeTextFile(folder / kManifest, manifest.dump(2) + "\n");
 }
 
+/// What the subject performed, by the template's names; a strong performer goes beyond 1.
+void writeWeights(const fs::path& folder, const std::vector<synth::Expression>& expressions) {
+  nlohmann::ordered_json weights;
+  for (const synth::Expression& expression : expressions) {
+    for (const auto& [action, weight] : expression.actions) weights[expression.name][action->name] = weight;
+  }
+  io::writeTextFile(folder / "weights.json", weights.dump(2) + "\n");
+}
+
 /// Makes the meshes, writes them, and returns what painting needs of each: the neutral first.
 std::vector<synth::Performance> performAll(const fs::path& folder, const synth::HeadShape& shape,
                                            const synth::HeadMesh& head,
@@ -177,7 +186,10 @@ void synthesizeCapture(const fs::path& output, const SynthOptions& options, Prog
       performAll(staged.path(), shape, head, expressions, options.seed, progress);
   const synth::TexturePainter painter(head, options.seed, options.resolution);
   paintAll(staged.path(), painter, performances, formats, progress);
-  if (options.rig_template) writeRigTemplate(staged.path() / "template", options.seed, progress);
+  if (options.rig_template) {
+    writeRigTemplate(staged.path() / "template", options.seed, progress);
+    writeWeights(staged.path(), expressions);
+  }
   writeManifest(staged.path(), options, formats, expressions);
   staged.commit();
 }

@@ -8,6 +8,7 @@
 #include <tbb/parallel_for.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -18,6 +19,12 @@ namespace {
 
 constexpr double kScreening = 0.25;  // of the mesh's diagonal
 constexpr int kRounds = 3;           // of still vertices, per iteration
+// Of the shapes' closeness, from free to the template's own; and how many triangles they are tried on.
+constexpr double kCloseness[] = {0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0};
+// Errors within this factor of the least are as good: of these the template's nearest is the safest.
+constexpr double kAsGood = 1.02;
+constexpr double kUsualCloseness = 0.03;
+constexpr Eigen::Index kTriangles = 4000;
 
 double between(double start, double end, int step, int steps) {
   return steps <= 1 ? end : start * std::pow(end / start, static_cast<double>(step) / (steps - 1));
@@ -61,9 +68,10 @@ class Fit {
 
   ExampleRig run(const std::function<void(int)>& step) {
     transfer();
+    const double closeness = chooseCloseness();
     for (int i = 0; i < options_.iterations; ++i) {
       if (step) step(i);
-      fitShapes(between(options_.shape_prior_start, options_.shape_prior_end, i, options_.iterations));
+      fitShapes(between(options_.shape_prior_fall * closeness, closeness, i, options_.iterations));
       fitWeights(between(options_.weight_prior_start, options_.weight_prior_end, i, options_.iterations));
     }
     rig_.degenerate_triangles = gradient_.degenerateTriangles();
@@ -181,27 +189,75 @@ class Fit {
     }
   }
 
-  /// minimises  sum_n |R_n - sum_m b_nm X_m|^2 + closeness sum_m w_m |X_m - X*_m|^2  by
-  ///   X = X* + D B^T (B D B^T + I)^-1 (R - B X*),  D = diag(1 / (closeness w_m)), 0 where the shape is still.
-  void fitTriangle(Eigen::Index t, double closeness, Eigen::MatrixXd& wanted) const {
-    using Rows = Eigen::Matrix<double, Eigen::Dynamic, 6>;
-    Rows prior(shapes_, 6), observed(examples_, 6);
-    for (Eigen::Index m = 0; m < shapes_; ++m) prior.row(m) << entry(prior_, t, m);
-    for (Eigen::Index n = 0; n < examples_; ++n) observed.row(n) << entry(observed_, t, n);
+  /// One triangle's part of Eq. 4 to 6: minimise  sum_n |R_n - sum_m b_nm X_m|^2 + closeness sum_m w_m |X_m - X*_m|^2.
+  struct TriangleSystem {
+    Eigen::Matrix<double, Eigen::Dynamic, 6> prior;   ///< X*, M by 6
+    Eigen::Matrix<double, Eigen::Dynamic, 6> missed;  ///< R - B X*, N by 6
+    Eigen::MatrixXd spread;  ///< D B^T, M by N, D = diag(1 / (closeness w_m)), 0 where the shape is still
+    Eigen::MatrixXd system;  ///< B D B^T + I, N by N
+  };
+
+  TriangleSystem systemOf(Eigen::Index t, double closeness) const {
+    TriangleSystem found;
+    found.prior.resize(shapes_, 6);
+    found.missed.resize(examples_, 6);
+    for (Eigen::Index m = 0; m < shapes_; ++m) found.prior.row(m) << entry(prior_, t, m);
+    for (Eigen::Index n = 0; n < examples_; ++n) found.missed.row(n) << entry(observed_, t, n);
+    found.missed -= rig_.weights * found.prior;
     Eigen::VectorXd freedom(shapes_);
     for (Eigen::Index m = 0; m < shapes_; ++m) {
-      const double strain = prior.row(m).norm();
+      const double strain = found.prior.row(m).norm();
       const double weight = std::pow((1.0 + strain) / (options_.kappa + strain), options_.theta);  // Eq. 6
       freedom[m] = isStill(t, m) ? 0.0 : 1.0 / (closeness * weight);
     }
-    const Eigen::MatrixXd spread = freedom.asDiagonal() * rig_.weights.transpose();  // D B^T, M by N
-    Eigen::MatrixXd system = rig_.weights * spread;
-    system.diagonal().array() += 1.0;
-    const Rows fitted = prior + spread * system.llt().solve(observed - rig_.weights * prior);
+    found.spread = freedom.asDiagonal() * rig_.weights.transpose();
+    found.system = rig_.weights * found.spread;
+    found.system.diagonal().array() += 1.0;
+    return found;
+  }
+
+  /// X = X* + D B^T (B D B^T + I)^-1 (R - B X*).
+  void fitTriangle(Eigen::Index t, double closeness, Eigen::MatrixXd& wanted) const {
+    const TriangleSystem s = systemOf(t, closeness);
+    const Eigen::Matrix<double, Eigen::Dynamic, 6> fitted = s.prior + s.spread * s.system.llt().solve(s.missed);
     for (Eigen::Index m = 0; m < shapes_; ++m) {
       wanted.block<1, 3>(2 * t, 3 * m) = fitted.row(m).head<3>();
       wanted.block<1, 3>(2 * t + 1, 3 * m) = fitted.row(m).tail<3>();
     }
+  }
+
+  /// The closeness with which every example's gradients are predicted best from the other examples: the error of
+  /// leaving n out is (S^-1 (R - B X*))_n / (S^-1)_nn with the triangle's system S (Rasmussen and Williams 2006,
+  /// Eq. 5.12).
+  double chooseCloseness() {
+    const Eigen::Index stride = std::max<Eigen::Index>(1, gradient_.triangles() / kTriangles);
+    const Eigen::Index count = (gradient_.triangles() + stride - 1) / stride;
+    const auto leftOut = [&](double closeness) {
+      Eigen::VectorXd errors(count), nothing(count);  // summed in order, whatever the number of threads
+      tbb::parallel_for(Eigen::Index{0}, count, [&](Eigen::Index i) {
+        const TriangleSystem s = systemOf(i * stride, closeness);
+        const Eigen::MatrixXd inverse = s.system.llt().solve(Eigen::MatrixXd::Identity(examples_, examples_));
+        const auto squares = (inverse * s.missed).rowwise().squaredNorm().array();
+        const double area = gradient_.areas()[i * stride];
+        errors[i] = area * (squares / inverse.diagonal().array().square()).sum();
+        nothing[i] = area * s.missed.squaredNorm();
+      });
+      rig_.left_out_template = std::sqrt(nothing.sum());
+      return std::sqrt(errors.sum());
+    };
+    // Two examples predict each other too badly to choose by.
+    if (options_.shape_prior || examples_ < 3) {
+      rig_.shape_prior = options_.shape_prior.value_or(kUsualCloseness);
+      rig_.left_out = leftOut(rig_.shape_prior);
+      return rig_.shape_prior;
+    }
+    std::vector<double> errors;
+    for (const double closeness : kCloseness) errors.push_back(leftOut(closeness));
+    const double most = kAsGood * *std::min_element(errors.begin(), errors.end());
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+      if (errors[i] <= most) rig_.left_out = errors[i], rig_.shape_prior = kCloseness[i];
+    }
+    return rig_.shape_prior;
   }
 
   /// The six derivatives of a field on a triangle.

@@ -210,6 +210,8 @@ void printRigReport(const RigReport& report) {
   row("mean", mean, template_mean);
   fmt::print("rms over all, mm, after each iteration:");
   for (const double rms : report.convergence) fmt::print(" {:.3f}", rms);
+  fmt::print("\ncloseness to the template {:g}: left-out expressions' gradients err {:.2f} of what the template errs",
+             report.shape_prior, report.left_out_share);
   fmt::print("\n\ntextures of shapes: {}", report.texture_solve);
   if (report.texture_damping > 0.0) fmt::print(", lambda {:g}", report.texture_damping);
   if (report.left_out_nothing > 0.0) {

@@ -122,8 +122,8 @@ TEST(ExampleRig, OneTriangleIsFittedAsTheNormalEquationsSay) {
   problem.guess = Eigen::MatrixXd::Constant(1, 1, 0.5);
   ExampleRigOptions options;
   options.iterations = 8;  // each goes most of the rest of the way, as nothing is still
-  options.shape_prior_start = 0.3;
-  options.shape_prior_end = 0.3;
+  options.shape_prior = 0.3;
+  options.shape_prior_fall = 1.0;
   options.guess_prior = options.weight_prior_start = options.weight_prior_end = 1e9;  // the weight is the guess
   options.transfer = ShapeTransfer::kDisplacements;
   const ExampleRig rig = fitExampleRig(problem, options);
@@ -133,6 +133,30 @@ TEST(ExampleRig, OneTriangleIsFittedAsTheNormalEquationsSay) {
   const double weight = 0.3 * std::pow((1 + prior.norm()) / (options.kappa + prior.norm()), options.theta);
   const Eigen::MatrixXd expected = (0.5 * observed + weight * prior) / (0.25 + weight);
   EXPECT_LT((gradient.of(rig.shapes[0]) - expected).norm(), 1e-3 * (expected - prior).norm());
+}
+
+TEST(ExampleRig, StaysNearTheTemplateWhereExamplesTellNothingOfTheShapes) {
+  Subject personal(20), noisy(20);
+  // The template's shapes, performed with a change of its own in every example.
+  std::mt19937 random(5);
+  std::normal_distribution<double> change(0.0, 0.15);
+  for (std::size_t n = 0; n < noisy.problem.examples.size(); ++n) {
+    noisy.problem.examples[n] = noisy.problem.neutral;
+    for (std::size_t m = 0; m < noisy.shapes.size(); ++m) {
+      noisy.shapes[m] = noisy.problem.template_shapes[m] - noisy.problem.neutral;
+      const Eigen::Vector3d own(1 + change(random), 1 + change(random), 1 + change(random));
+      noisy.problem.examples[n] += noisy.weights(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(m)) *
+                                   noisy.shapes[m] * own.asDiagonal();
+    }
+  }
+  const ExampleRig free = fitExampleRig(personal.problem, {}), held = fitExampleRig(noisy.problem, {});
+  EXPECT_LE(free.shape_prior, 0.03);
+  EXPECT_LT(free.left_out, 0.7 * free.left_out_template);
+  EXPECT_GE(held.shape_prior, 10 * free.shape_prior);
+  ExampleRigOptions options;
+  options.shape_prior = free.shape_prior;
+  const ExampleRig loose = fitExampleRig(noisy.problem, options);
+  EXPECT_LT(noisy.shapeError(held.shapes), 0.8 * noisy.shapeError(loose.shapes));
 }
 
 TEST(ExampleRig, ShapesThatNoExampleShowsKeepTheTemplates) {

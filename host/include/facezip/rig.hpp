@@ -50,6 +50,8 @@ struct RigReport {
   std::vector<RigResidual> template_residuals;  ///< N: by the template's shapes on the subject, weights fitted freely
   std::vector<double> convergence;  ///< rms over all expressions in mm, at the start and after each iteration
   std::string transfer;             ///< "deformation gradients" or "displacements"
+  double shape_prior = 0.0;         ///< closeness of the shapes to the template's (geometry::ExampleRig)
+  double left_out_share = 0.0;  ///< error of expressions' gradients predicted from the others, of the template's error
   std::vector<std::string> unseen;  ///< shapes that no expression uses: the template's, on the subject
   std::vector<std::string> still;   ///< shapes that move nothing
   int vertices = 0;                 ///< of the rig, parts beyond the skin included

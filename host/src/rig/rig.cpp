@@ -118,6 +118,8 @@ class Rigging {
     }
     for (const double rms : rig_.convergence) report_.convergence.push_back(scale * rms);
     report_.transfer = rig_.transfer == geometry::ShapeTransfer::kGradients ? "deformation gradients" : "displacements";
+    report_.shape_prior = rig_.shape_prior;
+    report_.left_out_share = rig_.left_out_template > 0.0 ? rig_.left_out / rig_.left_out_template : 1.0;
     report_.degenerate_triangles = rig_.degenerate_triangles;
     for (std::size_t m = 0; m < report_.shapes.size(); ++m) {
       if (rig_.shapes[m].isZero(0.0)) {

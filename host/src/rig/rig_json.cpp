@@ -43,6 +43,8 @@ std::string rigJson(const RigReport& report, double millimetres_per_unit) {
                                        {"template_residual_mm", residualJson(report.template_residuals[n])}});
   }
   document["fit"] = {{"transfer", report.transfer},
+                     {"closeness", report.shape_prior},
+                     {"left_out_share_of_template", report.left_out_share},
                      {"convergence_rms_mm", report.convergence},
                      {"unseen_shapes", report.unseen},
                      {"still_shapes", report.still},

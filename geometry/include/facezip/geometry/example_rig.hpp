@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "facezip/geometry/weight_solver.hpp"
@@ -30,8 +31,10 @@ enum class ShapeTransfer {
 /// Schedules go from start to end in equal ratios.
 struct ExampleRigOptions {
   int iterations = 10;  ///< of shapes and weights in turn, >= 0; 0: the transferred shapes with their weights
-  double shape_prior_start = 0.3;  ///< beta of Li et al. (Eq. 5): closeness of gradients to the transferred shapes'
-  double shape_prior_end = 0.03;
+  /// beta of Li et al. (Eq. 5) at the end, closeness of gradients to the transferred shapes'; none: the one with which
+  /// each example's gradients are predicted best from the others (0.03 for one or two)
+  std::optional<double> shape_prior;
+  double shape_prior_fall = 10.0;   ///< it starts so many times higher
   double weight_prior_start = 1.0;  ///< gamma (Eq. 8), of the mean squared length of a shape: weights stay where they
   double weight_prior_end = 0.3;    ///< began, which is a bounded fit of the transferred shapes ...
   double guess_prior = 3e-4;        ///< ... held to the guess by this much, of the same
@@ -51,6 +54,9 @@ struct ExampleRig {
   std::vector<Distances> residuals;           ///< of each example as the rig poses it
   std::vector<Distances> template_residuals;  ///< as the transferred shapes pose it
   std::vector<double> convergence;            ///< rms over all examples, at the start and after each iteration
+  double shape_prior = 0.0;                   ///< beta that was taken
+  double left_out = 0.0;                      ///< error of the examples' gradients, each predicted from the others ...
+  double left_out_template = 0.0;             ///< ... and of the transferred shapes alone
   int degenerate_triangles = 0;               ///< of the neutral; they follow their neighbours
 };
 

@@ -82,6 +82,19 @@ TEST_F(RigTest, BlendsByCapturedNamesAndByShapes) {
   EXPECT_GT(brightest("bumpC", 21, 19), 35);
 }
 
+TEST_F(RigTest, ABudgetHoldsTheWeightsOfTheShapes) {
+  RigOptions options = quickOptions();
+  options.fit.iterations = 0;
+  const std::uint64_t whole = Package::open(package()).bytesInMemory();
+  options.compress.budget_bytes = whole - 1;  // as many textures as it would take without the shapes do not fit
+  Progress progress;
+  const RigReport report = rigCapture(openCapture(folder() / "capture"), folder() / "template", folder() / "small",
+                                      options, test::testDevice(), progress);
+  ASSERT_TRUE(report.compress.rate);
+  EXPECT_LT(Package::open(folder() / "small").bytesInMemory(), whole);
+  EXPECT_EQ(Package::open(folder() / "small").bytesInMemory(), report.compress.rate->bytes);
+}
+
 TEST_F(RigTest, ShapesAreTheSubjectsAndWeightsAreRecovered) {
   const geometry::TriangleMesh neutral = geometry::readObj(package() / "shapes/neutral.obj");
   for (int m = 0; m < 3; ++m) {

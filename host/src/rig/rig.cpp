@@ -66,7 +66,9 @@ class Rigging {
     read();
     fit();
     // Compressed into the staging directory, which is empty: both appear together or not at all.
-    report_.compress = compressCapture(capture_, staged_.path(), options_.compress, device_, progress_);
+    CompressOptions compress = options_.compress;
+    compress.further_weight_maps = static_cast<int>(template_.names.size());  // a budget holds the shapes' too
+    report_.compress = compressCapture(capture_, staged_.path(), compress, device_, progress_);
     clock_.book("compressing");
     solveTextures();
     writeMeshes();

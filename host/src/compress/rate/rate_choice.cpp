@@ -27,13 +27,13 @@ void addMaps(std::span<const RateMap> maps, std::size_t scale, RatePoint& point)
 }  // namespace
 
 std::vector<RatePoint> rateCurve(std::span<const RateMap> maps, std::span<const int> scales,
-                                 std::span<const std::uint64_t> cells, int expressions) {
+                                 std::span<const std::uint64_t> cells, int weight_maps) {
   const bool precise = std::any_of(maps.begin(), maps.end(), [](const RateMap& map) { return map.sample_bytes > 1; });
   std::vector<RatePoint> curve;
   for (std::size_t s = 0; s < scales.size(); ++s) {
     for (int c = 1; c <= 8; ++c) {
       for (int bits = 8; bits <= (precise ? 16 : 8); bits += 8) {
-        RatePoint point{c, scales[s], bits, cells[s] * static_cast<std::uint64_t>(c * expressions), 0.0};
+        RatePoint point{c, scales[s], bits, cells[s] * static_cast<std::uint64_t>(c * weight_maps), 0.0};
         addMaps(maps, s, point);
         curve.push_back(point);
       }

@@ -28,9 +28,9 @@ struct RateMap {
 /// interpolated; codes of 8 bits add a share of the differences' own energy (kRounding), those of 16 that / 257^2.
 /// scales        texels of the largest map per cell, as RateMap::left counts them
 /// cells         of the weight grid at each scale, times the number of weight sets
-/// expressions   N
+/// weight_maps   of each set: N, a rig's M shapes beside them
 std::vector<RatePoint> rateCurve(std::span<const RateMap> maps, std::span<const int> scales,
-                                 std::span<const std::uint64_t> cells, int expressions);
+                                 std::span<const std::uint64_t> cells, int weight_maps);
 
 inline constexpr double kRounding = 1.5e-3;
 

@@ -24,7 +24,8 @@ bool mapsShareGrid(MapSet& maps, int scale) {
 
 }  // namespace
 
-RateEstimate::RateEstimate(MapSet& maps, int expressions) : maps_(maps), expressions_(expressions) {
+RateEstimate::RateEstimate(MapSet& maps, int expressions, int weight_maps)
+    : maps_(maps), expressions_(expressions), weight_maps_(weight_maps) {
   sides_.resize(maps.maps.size());
   for (const int scale : kScales) {
     if (!mapsShareGrid(maps, scale)) continue;
@@ -84,7 +85,7 @@ std::vector<RatePoint> RateEstimate::curve(int weight_sets) const {
                     static_cast<std::uint64_t>((reference.height + scale - 1) / scale) *
                     static_cast<std::uint64_t>(weight_sets));
   }
-  return rateCurve(maps, scales_, cells, expressions_);
+  return rateCurve(maps, scales_, cells, weight_maps_);
 }
 
 }  // namespace facezip::compress

@@ -14,7 +14,8 @@ namespace facezip::compress {
 class RateEstimate {
  public:
   /// Finds the weight scales, of 4, 8, 16 and 32, that all maps can share. Throws InputError where there is none.
-  RateEstimate(MapSet& maps, int expressions);
+  /// weight_maps  of each set: N, and what is to be added
+  RateEstimate(MapSet& maps, int expressions, int weight_maps);
 
   /// Looks at some of the texels of a band of map `m`; bands in rising order.
   void addBand(std::size_t m, const MapBand& band);
@@ -34,6 +35,7 @@ class RateEstimate {
 
   const MapSet& maps_;
   int expressions_;
+  int weight_maps_;
   std::vector<int> scales_;                ///< of the largest map, rising
   std::vector<std::vector<int>> sides_;    ///< of every map: texels of a block at each scale
   std::vector<BlockRankEnergy> energies_;  ///< of every map

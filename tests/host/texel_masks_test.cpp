@@ -62,6 +62,47 @@ TEST(TexelMasks, CountOnlyCoveredTexels) {
   EXPECT_EQ(count(raster::coverageTiles(raster, 0, 61)), covered);
 }
 
+TEST(TexelClasses, AreThoseOfTheRasterInEveryBand) {
+  const MaskedPatch patch;
+  using Kind = raster::TexelSample::Kind;
+  for (const auto& [width, height, gutter] : {std::array{93, 161, 7}, std::array{64, 200, 70}, std::array{33, 17, 0}}) {
+    const raster::UvRaster raster(patch.mesh, patch.triangles, width, height, gutter);
+    const raster::TexelClasses classes(raster);
+    const auto samples = raster.rows(0, height);
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        const Kind kind = samples[static_cast<std::size_t>(y * width + x)].kind;
+        EXPECT_EQ(classes.active(x / 16, y) >> x % 16 & 1u, kind == Kind::kCovered || kind == Kind::kGutter ? 1u : 0u);
+        EXPECT_EQ(classes.covered(x / 16, y) >> x % 16 & 1u, kind == Kind::kCovered ? 1u : 0u);
+      }
+    }
+  }
+}
+
+TEST(TexelMasks, ActiveTilesHoldTheClassesOfTheirRows) {
+  const MaskedPatch patch;
+  const raster::UvRaster raster(patch.mesh, patch.triangles, 93, 61, 7);
+  const auto samples = raster.rows(32, 61);
+  const compress::TileMasks tiles = raster::activeTiles(raster::TexelClasses(raster), 32, 61);
+  std::vector<float> active(samples.size(), 0.0f), covered(samples.size(), 0.0f);
+  for (std::size_t t = 0; t < tiles.tiles.size(); ++t) {
+    for (int p = 0; p < compress::kTileTexels; ++p) {
+      const int x = tiles.tiles[t].x * 16 + p % 16, y = tiles.tiles[t].y * 16 + p / 16;
+      const auto value = static_cast<std::size_t>(p) + t * 256;
+      if (x >= 93 || y >= 29) {
+        EXPECT_EQ(tiles.mask_weights[value] + tiles.texel_weights[value], 0.0f);
+        continue;
+      }
+      active[static_cast<std::size_t>(y * 93 + x)] = tiles.mask_weights[value];
+      covered[static_cast<std::size_t>(y * 93 + x)] = tiles.texel_weights[value];
+    }
+  }
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    EXPECT_EQ(active[i], samples[i].triangle >= 0 ? 1.0f : 0.0f);
+    EXPECT_EQ(covered[i], samples[i].kind == raster::TexelSample::Kind::kCovered ? 1.0f : 0.0f);
+  }
+}
+
 TEST(TexelMasks, OverlapsAreThePairsThatShareATexel) {
   const MaskedPatch patch;
   // So fine that every triangle has texels inside.

@@ -66,7 +66,7 @@ CompressStretchTextures::CompressStretchTextures(device::DeviceContext& context,
       textures_(context, "compress and stretch maps") {}
 
 TileMasks CompressStretchTextures::tiles(const OpenMap& map, int begin, int end) const {
-  return raster::activeTiles(*map.raster, begin, end);
+  return raster::activeTiles(*map.classes, begin, end);
 }
 
 const cl::Buffer& CompressStretchTextures::compute(const OpenMap& map, const MapBand& band) {

@@ -48,7 +48,7 @@ void fitWeights(CompressionState& state, WeightGroup& group, int most_sweeps) {
   refinement.most_sweeps = most_sweeps;
   RefinementProblem problem{state.weightSpace(), group.start, group.maps, {}, cellEnergy(state, group), 0};
   problem.make_tiles = [&state](const OpenMap& map, int begin, int end) {
-    return state.weighed(raster::activeTiles(*map.raster, begin, end), map, begin);
+    return state.weighed(raster::activeTiles(*map.classes, begin, end), map, begin);
   };
   state.buffers = std::make_unique<BandBuffers>(state.context);
   problem.window_rows = state.plannedWindowRows(group);

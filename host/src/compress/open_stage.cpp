@@ -62,6 +62,7 @@ void readGeometry(CompressionState& state) {
 
 void planBands(CompressionState& state) {
   makeRasters(state.maps, state.face.mesh, state.face.region, state.options.gutter);
+  classifyTexels(state.maps);
   state.groups.resize(state.options.weights_per_map ? state.maps.maps.size() : 1);
   for (std::size_t m = 0; m < state.maps.maps.size(); ++m) {
     state.groups[state.options.weights_per_map ? m : 0].maps.push_back(&state.maps.maps[m]);

@@ -14,7 +14,7 @@ FittedTextures::FittedTextures(device::DeviceContext& context, const WeightSpace
       fit_(context, space) {}
 
 TileMasks FittedTextures::tiles(const OpenMap& map, int begin, int end) const {
-  return raster::activeTiles(*map.raster, begin, end);
+  return raster::activeTiles(*map.classes, begin, end);
 }
 
 const cl::Buffer& FittedTextures::compute(const OpenMap& map, const MapBand& band) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cstdint>
 #include <set>
 #include <utility>
 
@@ -26,30 +27,28 @@ void append(TileMasks& whole, const TileMasks& part) {
   whole.texel_weights.insert(whole.texel_weights.end(), part.texel_weights.begin(), part.texel_weights.end());
 }
 
+/// 1 for each bit of 16 that is set, else 0.
+void spread(std::uint32_t bits, float* values) {
+  for (int x = 0; x < kTileSide; ++x) values[x] = static_cast<float>(bits >> x & 1u);
+}
+
 /// Calls visit(tile, active, covered) for every tile of one row of tiles with the 256 values of each: 1 where a texel
 /// has a triangle of the region (its own, or its neighbour's in the gutter), and where it is covered.
 template <typename Visit>
-void forEachTile(const std::vector<TexelSample>& samples, int width, int rows, int tile_y, const Visit& visit) {
-  std::array<float, kTileTexels> active;
-  std::array<float, kTileTexels> covered;
-  const int y_end = std::min(rows, (tile_y + 1) * kTileSide);
-  for (int tile_x = 0; tile_x * kTileSide < width; ++tile_x) {
-    const int x_end = std::min(width, (tile_x + 1) * kTileSide);
-    active.fill(0.0f);
-    covered.fill(0.0f);
-    bool any = false;
-    for (int y = tile_y * kTileSide; y < y_end; ++y) {
-      for (int x = tile_x * kTileSide; x < x_end; ++x) {
-        const TexelSample& sample =
-            samples[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
-        if (sample.triangle < 0) continue;
-        const auto t = static_cast<std::size_t>((y - tile_y * kTileSide) * kTileSide + x - tile_x * kTileSide);
-        active[t] = 1.0f;
-        if (sample.kind == TexelSample::Kind::kCovered) covered[t] = 1.0f;
-        any = true;
-      }
+void forEachTile(const TexelClasses& classes, int begin, int end, int tile_y, const Visit& visit) {
+  const int first = begin + tile_y * kTileSide;
+  const int rows = std::min(kTileSide, end - first);
+  for (int tile_x = 0; tile_x * kTileSide < classes.width(); ++tile_x) {
+    std::uint32_t any = 0;
+    for (int y = 0; y < rows; ++y) any |= classes.active(tile_x, first + y);
+    if (any == 0) continue;
+    std::array<float, kTileTexels> active{};
+    std::array<float, kTileTexels> covered{};
+    for (int y = 0; y < rows; ++y) {
+      spread(classes.active(tile_x, first + y), active.data() + y * kTileSide);
+      spread(classes.covered(tile_x, first + y), covered.data() + y * kTileSide);
     }
-    if (any) visit(TilePosition{tile_x, tile_y}, active, covered);
+    visit(TilePosition{tile_x, tile_y}, active, covered);
   }
 }
 
@@ -167,9 +166,9 @@ std::vector<compress::MaskPair> TexelMasks::overlappingPairs() const {
 }
 
 compress::TileMasks coverageTiles(const UvRaster& raster, int begin, int end) {
-  const std::vector<TexelSample> samples = raster.coveredRows(begin, end);
+  const TexelClasses classes = TexelClasses::coveredRows(raster, begin, end);
   return tilesByRows(end - begin, [&](int tile_y, TileMasks& out) {
-    forEachTile(samples, raster.width(), end - begin, tile_y, [&](TilePosition tile, const auto&, const auto& covered) {
+    forEachTile(classes, 0, end - begin, tile_y, [&](TilePosition tile, const auto&, const auto& covered) {
       out.tiles.push_back(tile);
       out.mask_begin.push_back(0);
       out.texel_weights.insert(out.texel_weights.end(), covered.begin(), covered.end());
@@ -177,17 +176,15 @@ compress::TileMasks coverageTiles(const UvRaster& raster, int begin, int end) {
   });
 }
 
-compress::TileMasks activeTiles(const UvRaster& raster, int begin, int end) {
-  const std::vector<TexelSample> samples = raster.rows(begin, end);
+compress::TileMasks activeTiles(const TexelClasses& classes, int begin, int end) {
   return tilesByRows(end - begin, [&](int tile_y, TileMasks& out) {
-    forEachTile(samples, raster.width(), end - begin, tile_y,
-                [&](TilePosition tile, const auto& active, const auto& covered) {
-                  out.tiles.push_back(tile);
-                  out.mask_index.push_back(0);
-                  out.mask_weights.insert(out.mask_weights.end(), active.begin(), active.end());
-                  out.mask_begin.push_back(static_cast<int>(out.mask_index.size()));
-                  out.texel_weights.insert(out.texel_weights.end(), covered.begin(), covered.end());
-                });
+    forEachTile(classes, begin, end, tile_y, [&](TilePosition tile, const auto& active, const auto& covered) {
+      out.tiles.push_back(tile);
+      out.mask_index.push_back(0);
+      out.mask_weights.insert(out.mask_weights.end(), active.begin(), active.end());
+      out.mask_begin.push_back(static_cast<int>(out.mask_index.size()));
+      out.texel_weights.insert(out.texel_weights.end(), covered.begin(), covered.end());
+    });
   });
 }
 

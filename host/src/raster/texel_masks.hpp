@@ -8,6 +8,7 @@
 #include "compress/search/gram_matrices.hpp"
 #include "facezip/geometry/face_region.hpp"
 #include "facezip/geometry/mask_weights.hpp"
+#include "raster/texel_classes.hpp"
 #include "raster/uv_raster.hpp"
 
 namespace facezip::raster {
@@ -52,6 +53,6 @@ compress::TileMasks coverageTiles(const UvRaster& raster, int begin, int end);
 
 /// The tiles of rows [begin, end) that hold covered or gutter texels, each with one mask (index 0): 1 at those texels,
 /// 0 elsewhere. Texel weights are 1 at the covered ones.
-compress::TileMasks activeTiles(const UvRaster& raster, int begin, int end);
+compress::TileMasks activeTiles(const TexelClasses& classes, int begin, int end);
 
 }  // namespace facezip::raster

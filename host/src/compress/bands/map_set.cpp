@@ -51,6 +51,15 @@ void makeRasters(MapSet& set, const geometry::TriangleMesh& mesh, std::span<cons
   }
 }
 
+void classifyTexels(MapSet& set) {
+  std::map<const raster::UvRaster*, std::shared_ptr<const raster::TexelClasses>> classes;
+  for (OpenMap& map : set.maps) {
+    auto& one = classes[map.raster.get()];
+    if (!one) one = std::make_shared<raster::TexelClasses>(*map.raster);
+    map.classes = one;
+  }
+}
+
 void assignFitWeights(std::span<OpenMap* const> maps) {
   const bool any_counts =
       std::any_of(maps.begin(), maps.end(), [](const OpenMap* map) { return map->metric_weight > 0.0; });

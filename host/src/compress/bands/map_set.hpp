@@ -10,6 +10,7 @@
 #include "facezip/capture.hpp"
 #include "facezip/geometry/mesh.hpp"
 #include "image/sample_bands.hpp"
+#include "raster/texel_classes.hpp"
 #include "raster/uv_raster.hpp"
 
 namespace facezip::compress {
@@ -20,8 +21,9 @@ struct OpenMap {
   double metric_weight = 1.0;  ///< how much its errors count: the source's, but 1 where that of every map is 0
   double fit_weight = 1.0;     ///< the same among the maps that share a set of weights with it
   std::unique_ptr<image::SampleBands> samples;
-  std::shared_ptr<const raster::UvRaster> raster;  ///< shared by the maps of one size
-  int weight_scale = 0;                            ///< texels of this map per weight cell, per axis
+  std::shared_ptr<const raster::UvRaster> raster;       ///< shared by the maps of one size
+  std::shared_ptr<const raster::TexelClasses> classes;  ///< of the raster; likewise
+  int weight_scale = 0;                                 ///< texels of this map per weight cell, per axis
 };
 
 struct MapSet {
@@ -39,6 +41,9 @@ MapSet openMaps(const Capture& capture);
 /// gutter  texels; none: max(16, side / 64)
 void makeRasters(MapSet& set, const geometry::TriangleMesh& mesh, std::span<const int> region,
                  std::optional<int> gutter);
+
+/// Classifies the texels of the rasters, which passes with a gutter but without masks ask for.
+void classifyTexels(MapSet& set);
 
 /// Sets the fit weight of maps that share a set of weights: their metric weight, but 1 where that of each is 0.
 void assignFitWeights(std::span<OpenMap* const> maps);

@@ -1,0 +1,44 @@
+// texel_classes.hpp - which texels of an image show the region and which are its gutter, known to all passes at once.
+// The gutter of a band reaches for covered texels far into the rows beside it: bands of few rows, as wide images have
+// them, would raster most rows several times in every pass.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "compress/bands/tile_band.hpp"
+#include "raster/uv_raster.hpp"
+
+namespace facezip::raster {
+
+/// Two bits for each texel of a raster.
+class TexelClasses {
+ public:
+  /// Of the whole image.
+  explicit TexelClasses(const UvRaster& raster);
+  /// Of rows [begin, end) as a whole of their own, without the gutter.
+  static TexelClasses coveredRows(const UvRaster& raster, int begin, int end);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+  /// Texels of row y that column `tile_x` of tiles holds, the leftmost in the lowest bit: covered or gutter.
+  std::uint32_t active(int tile_x, int y) const { return words_[index(tile_x, y)] & 0xffffu; }
+  /// The same, covered alone.
+  std::uint32_t covered(int tile_x, int y) const { return words_[index(tile_x, y)] >> 16; }
+
+ private:
+  TexelClasses(int width, int height);
+  /// Takes over whole rows of samples, the first as row `y`.
+  void set(const std::vector<TexelSample>& samples, int y);
+  std::size_t index(int tile_x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(tile_columns_) + static_cast<std::size_t>(tile_x);
+  }
+
+  int width_;
+  int height_;
+  int tile_columns_;
+  std::vector<std::uint32_t> words_;  ///< [row][tile column]: active, then covered << 16
+};
+
+}  // namespace facezip::raster

@@ -5,10 +5,11 @@
 
 #include "commands.hpp"
 #include "facezip/export.hpp"
+#include "terminal.hpp"
 
 namespace facezip::cli {
 
-void addExportCommand(CLI::App& app, const CommonOptions& /*common*/) {
+void addExportCommand(CLI::App& app, const CommonOptions& common) {
   struct Arguments {
     std::string package;
     std::string target;
@@ -22,8 +23,11 @@ void addExportCommand(CLI::App& app, const CommonOptions& /*common*/) {
       ->check(CLI::IsMember(exportTargets()))
       ->type_name("NAME");
   command->add_option("-o,--output", arguments->output, "Folder to write")->required()->type_name("DIR");
-  command->callback([arguments] {
-    exportPackage(Package::open(arguments->package), arguments->target, arguments->output);
+  command->callback([arguments, &common] {
+    TerminalProgress progress(common.quiet);
+    const std::vector<std::string> losses =
+        exportPackage(Package::open(arguments->package), arguments->target, arguments->output);
+    for (const std::string& loss : losses) progress.note(loss);
     fmt::print("Read {}\n", (std::filesystem::path(arguments->output) / "README.md").string());
   });
 }

@@ -16,6 +16,8 @@ std::vector<std::string> exportTargets();
 /// engines take them, the blend in the target's language, and README.md for the person who drops it in: docs/export.md.
 /// It appears whole or not at all; a folder that was exported before is replaced. Throws InputError for an unknown
 /// target, a package without a mesh, and, of engines, one with maps of floats alone; OutputError.
-void exportPackage(const Package& package, const std::string& target, const std::filesystem::path& output);
+/// Returns what of the package the target does not get, a sentence each.
+std::vector<std::string> exportPackage(const Package& package, const std::string& target,
+                                       const std::filesystem::path& output);
 
 }  // namespace facezip

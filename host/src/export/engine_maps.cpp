@@ -96,6 +96,19 @@ std::vector<EngineMap> engineMaps(const Package& package) {
   return maps;
 }
 
+std::vector<std::string> lossesOf(const Package& package) {
+  std::vector<std::string> losses;
+  for (const PackageMap& map : package.maps()) {
+    if (map.sample_type == SampleType::kFloat32) {
+      losses.push_back(
+          fmt::format("{}: left out, its samples are floats and textures of engines have 8 bits", map.name));
+    } else if (map.sample_type == SampleType::kUint16) {
+      losses.push_back(fmt::format("{}: rounded from 16 bits to 8", map.name));
+    }
+  }
+  return losses;
+}
+
 void requireMaps(const Package& package, const std::vector<EngineMap>& maps) {
   if (!maps.empty()) return;
   throw InputError({package.directory().string(), "maps", "one of 8 or 16 bits", "floats alone",

@@ -30,6 +30,9 @@ struct EngineMap {
 /// The maps of 8 and 16 bits: engines take no floats of ours.
 std::vector<EngineMap> engineMaps(const Package& package);
 
+/// What engines get less of than the package holds: floats are left out, 16 bits become 8. A sentence for each map.
+std::vector<std::string> lossesOf(const Package& package);
+
 /// Throws InputError where engineMaps() found none.
 void requireMaps(const Package& package, const std::vector<EngineMap>& maps);
 

@@ -88,7 +88,7 @@ std::vector<std::string> exportTargets() {
   return names;
 }
 
-void exportPackage(const Package& package, const std::string& target, const fs::path& output) {
+std::vector<std::string> exportPackage(const Package& package, const std::string& target, const fs::path& output) {
   const auto found = targets().find(target);
   if (found == targets().end()) {
     throw InputError({"--target", "", fmt::format("{}", fmt::join(exportTargets(), ", ")), target, ""});
@@ -112,6 +112,7 @@ void exportPackage(const Package& package, const std::string& target, const fs::
     io::writeTextFile(staged.path() / name, std::string(exporting::embeddedExportFiles().at(file)));
   }
   staged.commit();
+  return chosen.write != nullptr ? exporting::lossesOf(package) : std::vector<std::string>();
 }
 
 }  // namespace facezip

@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 
 #include "commands.hpp"
@@ -26,13 +24,6 @@ struct Arguments {
   std::string memory = "2GiB";
 };
 
-std::string readText(const std::string& file) {
-  if (file.empty()) return "";
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError({file, "", "what `facezip compress --report` wrote", "no such file", ""});
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
-
 /// Pixels of the pictures: as many as keep the page below 30 MB or so.
 int pictureSide(std::size_t pictures) {
   constexpr std::size_t kMostPixels = 48 * 384 * 384;
@@ -46,7 +37,8 @@ void report(const Arguments& arguments, Progress& progress) {
   if (std::filesystem::path(arguments.output).extension() != ".html") {
     throw InputError({"--output", "", "a file name that ends in .html", arguments.output, ""});
   }
-  const std::string compressed = readText(arguments.compress_report);
+  std::string compressed;
+  if (!arguments.compress_report.empty()) compressed = readCompressReport(arguments.compress_report);
   EvaluateOptions options;
   options.blends = 0;
   options.pictures = true;

@@ -274,6 +274,23 @@ TEST_F(BadInput, DamagedPackages) {
   }
 }
 
+TEST_F(BadInput, ReportOfACompressionThatIsNone) {
+  ASSERT_EQ(compress().exit_code, cli::kExitSuccess);
+  const fs::path page = folder_ / "page.html";
+  io::writeTextFile(folder_ / "list.json", "[]");
+  io::writeTextFile(folder_ / "text.json", "{ not json");
+  for (const auto& [file, got] : {std::pair("none.json", "no such file"), std::pair("list.json", "something else"),
+                                  std::pair("text.json", "something else"), std::pair("capture", "a folder")}) {
+    const test::CommandResult result =
+        runFacezip("report " + quoted(capture()) + " " + quoted(package()) + " --output " + quoted(page) +
+                   " --compress-report " + quoted(folder_ / file));
+    EXPECT_EQ(result.exit_code, cli::kExitInput) << file;
+    EXPECT_THAT(result.error, HasSubstr((folder_ / file).string()));
+    EXPECT_THAT(result.error, HasSubstr(got));
+    EXPECT_FALSE(fs::exists(page));
+  }
+}
+
 TEST_F(BadInput, UnknownExpressionNamesTheNearest) {
   ASSERT_EQ(compress().exit_code, cli::kExitSuccess);
   const test::CommandResult result =

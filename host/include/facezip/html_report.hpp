@@ -11,12 +11,15 @@ namespace facezip {
 
 struct HtmlReportOptions {
   std::string device;         ///< name of the device that evaluated
-  std::string compress_json;  ///< what `compress --report` wrote, for its times; "" where it is not at hand
+  std::string compress_json;  ///< of readCompressReport(), for its times; "" where it is not at hand
 };
+
+/// Reads what `compress --report` wrote. Throws InputError where it is not there or something else.
+std::string readCompressReport(const std::filesystem::path& file);
 
 /// Writes a page that holds all it shows: no network, no files beside it. It appears whole or not at all.
 /// evaluation  with pictures (EvaluateOptions::pictures)
-/// Throws InputError for a compress_json that is no such report, or damaged images of the package; OutputError.
+/// Throws InputError for damaged images of the package, OutputError.
 void writeHtmlReport(const std::filesystem::path& file, const Package& package, const Evaluation& evaluation,
                      const HtmlReportOptions& options);
 

@@ -5,10 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
 #include "image/image_file.hpp"
+#include "io/read_file.hpp"
 #include "package/guides.hpp"
 #include "package/json_field.hpp"
 #include "package/package_json.hpp"
@@ -18,20 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kLargestGain = 16.0;
-
-std::string readText(const fs::path& file) {
-  constexpr std::uintmax_t kLargest = 16u << 20;
-  std::error_code error;
-  const std::uintmax_t bytes = fs::file_size(file, error);
-  std::ifstream stream(file, std::ios::binary);
-  if (error || !stream) {
-    throw InputError({file.string(), "", "a preset that `facezip view` saved", "no such file", ""});
-  }
-  if (bytes > kLargest) {
-    throw InputError({file.string(), "", fmt::format("at most {} bytes", kLargest), fmt::format("{}", bytes), ""});
-  }
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
+constexpr std::uintmax_t kLargestFile = 16u << 20;
 
 void requirePresetOf(const package::JsonField& document, const Package& package) {
   const package::JsonField format = document["format"];
@@ -124,7 +110,8 @@ void applyRegions(const Package& package, Gain& gain) {
 }
 
 Gain readGain(const fs::path& file, const Package& package) {
-  const nlohmann::json json = package::parseJson(readText(file), file.string());
+  const nlohmann::json json =
+      package::parseJson(io::readFile(file, "a preset that `facezip view` saved", "", kLargestFile), file.string());
   const package::JsonField document(json, file.string(), "");
   requirePresetOf(document, package);
   Gain gain = unitGain(package);

@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <fstream>
-#include <iterator>
 #include <system_error>
 
+#include "io/read_file.hpp"
 #include "package/guides.hpp"
 #include "package/package_files.hpp"
 #include "package/package_json.hpp"
@@ -17,19 +16,8 @@ namespace {
 
 std::string readDescription(const fs::path& file) {
   constexpr std::uintmax_t kLargest = 64u << 20;  // a package of 65536 expressions stays below
-  std::error_code error;
-  if (!fs::is_regular_file(file, error)) {
-    throw InputError({file.string(), "", "the description of a facezip package", "no such file",
-                      "name a directory that `facezip compress` wrote"});
-  }
-  const std::uintmax_t bytes = fs::file_size(file, error);
-  if (error || bytes > kLargest) {
-    throw InputError({file.string(), "", fmt::format("at most {} bytes", kLargest), fmt::format("{}", bytes), ""});
-  }
-  std::ifstream stream(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (!stream && !stream.eof()) throw InputError({file.string(), "", "a readable file", "a read error", ""});
-  return text;
+  return io::readFile(file, "the description of a facezip package", "name a directory that `facezip compress` wrote",
+                      kLargest);
 }
 
 }  // namespace

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
@@ -14,6 +12,7 @@
 #include "facezip/report.hpp"
 #include "image/image_file.hpp"
 #include "io/base64.hpp"
+#include "io/read_file.hpp"
 #include "io/staged_directory.hpp"
 #include "package/package_json.hpp"
 #include "report/report_page.hpp"
@@ -33,9 +32,7 @@ class Pictures {
   std::string uri(const image::Image& picture) const {
     const fs::path file = staged_.path() / "picture.png";
     image::writeImage(file, picture);
-    std::ifstream stream(file, std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-    return "data:image/png;base64," + io::base64(bytes);
+    return "data:image/png;base64," + io::base64(io::readFile(file, "a picture of the report"));
   }
 
  private:
@@ -167,13 +164,6 @@ json searchJson(const Evaluation& evaluation) {
   return search;
 }
 
-json compressJson(const std::string& text) {
-  if (text.empty()) return nullptr;
-  json report = json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (report.is_object() && report.value("facezip_report", "") == "compress") return report;
-  throw InputError({"--compress-report", "", "what `facezip compress --report` wrote", "something else", ""});
-}
-
 /// JSON inside a page: no end of a script can stand in it.
 std::string forScript(const json& data) {
   std::string text = data.dump(-1, ' ', /*ensure_ascii=*/true);
@@ -184,6 +174,14 @@ std::string forScript(const json& data) {
 
 }  // namespace
 
+std::string readCompressReport(const fs::path& file) {
+  const std::string expected = "what `facezip compress --report` wrote";
+  std::string text = io::readFile(file, expected);
+  const json report = json::parse(text, nullptr, /*allow_exceptions=*/false);
+  if (report.is_object() && report.value("facezip_report", json()) == "compress") return text;
+  throw InputError({file.string(), "", expected, "something else", ""});
+}
+
 void writeHtmlReport(const fs::path& file, const Package& package, const Evaluation& evaluation,
                      const HtmlReportOptions& options) {
   assert(!evaluation.pictures.empty());
@@ -191,7 +189,7 @@ void writeHtmlReport(const fs::path& file, const Package& package, const Evaluat
   json data = {{"evaluation", json::parse(toJson(evaluation))},
                {"package", json::parse(package::packageJson(package.description()))},
                {"device", options.device},
-               {"compress", compressJson(options.compress_json)},
+               {"compress", options.compress_json.empty() ? json() : json::parse(options.compress_json)},
                {"search", searchJson(evaluation)},
                {"sweep", json::array()},
                {"note", ""},

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "facezip/error.hpp"
 #include "facezip/version.hpp"
+#include "io/read_file.hpp"
 #include "package/json_field.hpp"
 
 namespace facezip {
@@ -64,11 +63,7 @@ bool isRig(const std::filesystem::path& package) {
 
 Rig openRig(const std::filesystem::path& package) {
   const std::filesystem::path file = package / rig::kRigFile;
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) {
-    throw InputError({file.string(), "", "a package that `facezip rig` made", "no readable rig.json", ""});
-  }
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  const std::string text = io::readFile(file, "rig.json of a package that `facezip rig` made");
   const nlohmann::json document = package::parseJson(text, file.string());
   const package::JsonField root(document, file.string(), "");
   if (root["format"].text() != "facezip-rig") root["format"].fail("\"facezip-rig\"", root["format"].got());

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "blend/names.hpp"
 #include "blend/number.hpp"
 #include "facezip/error.hpp"
+#include "io/read_file.hpp"
 #include "package/json_field.hpp"
 #include "package/package_json.hpp"
 
@@ -86,7 +86,8 @@ std::vector<std::string> fieldsOf(const std::string& line) {
   return fields;
 }
 
-void readCsv(std::istream& stream, Guess& guess) {
+void readCsv(const std::string& text, Guess& guess) {
+  std::istringstream stream(text);
   std::vector<Eigen::Index> columns;
   std::string line;
   for (std::size_t number = 1; std::getline(stream, line); ++number) {
@@ -135,15 +136,12 @@ void readJson(const nlohmann::json& document, Guess& guess) {
 
 Eigen::MatrixXd readGuess(const std::filesystem::path& file, const std::vector<std::string>& expressions,
                           const std::vector<std::string>& shapes) {
-  std::ifstream stream(file);
-  if (!stream)
-    throw InputError({file.string(), "", "weights of the expressions (.csv or .json)", "no readable file", ""});
+  const std::string text = io::readFile(file, "weights of the expressions (.csv or .json)");
   Guess guess(file, expressions, shapes);
   if (file.extension() == ".json") {
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
     readJson(package::parseJson(text, file.string()), guess);
   } else if (file.extension() == ".csv") {
-    readCsv(stream, guess);
+    readCsv(text, guess);
   } else {
     throw InputError({file.string(), "", "a name that ends in .csv or .json", file.extension().string(), ""});
   }

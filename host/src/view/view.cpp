@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "io/base64.hpp"
+#include "io/read_file.hpp"
 #include "io/staged_directory.hpp"
 #include "package/package_json.hpp"
 #include "view/viewer_files.hpp"
@@ -14,13 +13,6 @@
 namespace facezip {
 namespace fs = std::filesystem;
 namespace {
-
-std::string readBytes(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (!stream) throw InputError({file.string(), "", "a readable file", "a read error", ""});
-  return bytes;
-}
 
 /// Tells the page, before its script runs, that the package's files are scripts.
 std::string pageOnDisk(std::string_view page) {
@@ -56,7 +48,7 @@ void writeViewer(const Package& package, const fs::path& output) {
     const fs::path file = staged.path() / "package" / (name + ".js");
     io::createDirectories(file.parent_path());
     io::writeTextFile(file, fmt::format("facezipFile({},\"{}\")\n", nlohmann::json(name).dump(),
-                                        io::base64(readBytes(package.directory() / name))));
+                                        io::base64(io::readFile(package.directory() / name, "a file of the package"))));
   }
   staged.commit();
 }

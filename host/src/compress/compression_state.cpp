@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "compress/band_plan.hpp"
 #include "compress/compress_stretch.hpp"
@@ -33,12 +34,18 @@ double CompressionState::coveredTexels(const OpenMap& map) const {
 }
 
 /// What stays from pass to pass: weights of every set as codes, at the start and as written, one as halves while it
-/// is refined, and the masks of the cells.
+/// is refined, the masks of the cells, and the classes of the texels of each raster.
 std::uint64_t CompressionState::residentBytes() const {
   constexpr std::uint64_t kMasksOfACell = 8;
   const WeightSpace space = weightSpace();
   const std::uint64_t cells = static_cast<std::uint64_t>(space.columns) * static_cast<std::uint64_t>(space.rows);
-  return cells * (static_cast<std::uint64_t>(expressions() * options.differences * (2 * weightSets() + 2)) +
+  std::set<const raster::TexelClasses*> classes;
+  std::uint64_t class_bytes = 0;
+  for (const OpenMap& map : maps.maps) {
+    if (classes.insert(map.classes.get()).second) class_bytes += map.classes->bytes();
+  }
+  return class_bytes +
+         cells * (static_cast<std::uint64_t>(expressions() * options.differences * (2 * weightSets() + 2)) +
                   kMasksOfACell * (sizeof(int) + sizeof(float)) + sizeof(int));
 }
 

@@ -21,6 +21,7 @@ class TexelClasses {
 
   int width() const { return width_; }
   int height() const { return height_; }
+  std::size_t bytes() const { return words_.size() * sizeof(std::uint32_t); }
 
   /// Texels of row y that column `tile_x` of tiles holds, the leftmost in the lowest bit: covered or gutter.
   std::uint32_t active(int tile_x, int y) const { return words_[index(tile_x, y)] & 0xffffu; }

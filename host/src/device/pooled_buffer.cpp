@@ -6,12 +6,12 @@
 
 namespace facezip::device {
 
-MappedBytes::MappedBytes(const DeviceContext& context, const cl::Buffer& buffer, std::size_t bytes, cl_map_flags flags,
+MappedBytes::MappedBytes(const DeviceContext& context, const cl::Buffer& buffer, std::size_t bytes,
                          std::string_view what)
     : context_(context), buffer_(buffer) {
   if (bytes == 0) return;  // OpenCL maps no empty region
   try {
-    void* data = context_.queue().enqueueMapBuffer(buffer_, CL_TRUE, flags, 0, bytes);
+    void* data = context_.queue().enqueueMapBuffer(buffer_, CL_TRUE, CL_MAP_READ, 0, bytes);
     bytes_ = {static_cast<std::byte*>(data), bytes};
   } catch (const cl::Error& error) {
     throw toDeviceError(error, fmt::format("mapping {}", what), context_.info());
@@ -37,13 +37,9 @@ const cl::Buffer& PooledBuffer::reserve(std::size_t bytes) {
   return buffer_;
 }
 
-MappedBytes PooledBuffer::mapForWriting(std::size_t bytes) {
-  return {context_, reserve(bytes), bytes, CL_MAP_WRITE_INVALIDATE_REGION, what_};
-}
-
 MappedBytes PooledBuffer::mapForReading(std::size_t bytes) {
   requireBytes(context_, buffer_, bytes, what_);
-  return {context_, buffer_, bytes, CL_MAP_READ, what_};
+  return {context_, buffer_, bytes, what_};
 }
 
 void requireBytes(const DeviceContext& context, const cl::Buffer& buffer, std::size_t bytes, std::string_view what) {

@@ -11,11 +11,10 @@
 
 namespace facezip::device {
 
-/// Host view of a buffer; unmaps when it goes. The device must not use the buffer meanwhile.
+/// Host view of a buffer, to read; unmaps when it goes. The device must not use the buffer meanwhile.
 class MappedBytes {
  public:
-  MappedBytes(const DeviceContext& context, const cl::Buffer& buffer, std::size_t bytes, cl_map_flags flags,
-              std::string_view what);
+  MappedBytes(const DeviceContext& context, const cl::Buffer& buffer, std::size_t bytes, std::string_view what);
   ~MappedBytes();
   MappedBytes(const MappedBytes&) = delete;
   MappedBytes& operator=(const MappedBytes&) = delete;
@@ -50,8 +49,7 @@ class PooledBuffer {
     return buffer_;
   }
 
-  /// Makes room for `bytes` and maps them for the host to write (all of them: what was there is lost) or to read.
-  MappedBytes mapForWriting(std::size_t bytes);
+  /// Maps `bytes` for the host to read.
   MappedBytes mapForReading(std::size_t bytes);
 
   const cl::Buffer& buffer() const { return buffer_; }

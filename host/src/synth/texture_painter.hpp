@@ -57,7 +57,6 @@ class TexturePainter {
   TexturePainter(const HeadMesh& head, std::uint64_t seed, int resolution);
 
   int resolution() const { return resolution_; }
-  double texelMetres() const { return HeadMesh::kUvExtent / resolution_; }
 
   /// Fixed skin for painting the rows [begin, end): with a margin for resampling, in parallel over rows.
   SkinBand skinBand(int begin, int end) const;

@@ -1,6 +1,5 @@
 #include "compress/bands/device_tiles.hpp"
 
-#include <algorithm>
 #include <cassert>
 
 namespace facezip::compress {
@@ -20,8 +19,6 @@ void DeviceTiles::upload(const TileMasks& masks) {
   tile_count_ = masks.tiles.size();
   begin_ = masks.mask_begin;
   index_ = masks.mask_index;
-  most_masks_ = 0;
-  for (std::size_t t = 0; t < tile_count_; ++t) most_masks_ = std::max(most_masks_, begin_[t + 1] - begin_[t]);
   static_assert(sizeof(TilePosition) == 2 * sizeof(cl_int));
   positions_.upload(std::span<const TilePosition>(masks.tiles));
   mask_begin_.upload(std::span<const int>(masks.mask_begin));

@@ -22,8 +22,6 @@ class DeviceTiles {
   std::size_t tileCount() const { return tile_count_; }
   /// Masks that are active in tile `t`, rising (host memory).
   std::span<const int> masksOf(std::size_t t) const;
-  /// Largest number of masks in a tile of the band.
-  int mostMasks() const { return most_masks_; }
 
   // Device memory, laid out as TileMasks is.
   const cl::Buffer& positions() const { return positions_.buffer(); }         ///< [tile] int2, in tiles
@@ -34,7 +32,6 @@ class DeviceTiles {
 
  private:
   std::size_t tile_count_ = 0;
-  int most_masks_ = 0;
   std::vector<int> begin_;
   std::vector<int> index_;
   device::PooledBuffer positions_;

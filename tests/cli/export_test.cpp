@@ -2,10 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <iterator>
-
 #include "exit_codes.hpp"
+#include "file_contents.hpp"
 #include "io/staged_directory.hpp"
 #include "run_command.hpp"
 #include "small_capture.hpp"
@@ -14,6 +12,7 @@
 namespace facezip {
 namespace {
 namespace fs = std::filesystem;
+using test::contentsOf;
 using test::quoted;
 using test::runFacezip;
 using testing::HasSubstr;
@@ -27,6 +26,7 @@ class Export : public testing::Test {
     compress("bare", {.expressions = 6}, " --no-mesh");
     compress("crowd", {.expressions = 100, .width = 40, .height = 40}, " --differences 5");
     compress("floats", {.expressions = 5, .type = image::SampleType::kFloat32, .extension = "exr"});
+    compress("deep", {.expressions = 5, .type = image::SampleType::kUint16});
   }
   static void TearDownTestSuite() { delete folder_; }
 
@@ -42,10 +42,6 @@ class Export : public testing::Test {
     return runFacezip("export " + quoted(folder() / package) + " --target " + target + " --output " + quoted(output));
   }
   static fs::path folder() { return folder_->path(); }
-  static std::string textOf(const fs::path& file) {
-    std::ifstream in(file);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
   static std::set<std::string> namesIn(const fs::path& folder) {
     std::set<std::string> names;
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -84,14 +80,14 @@ TEST_F(Export, EveryTargetBringsWhatItsReadmeSpeaksOf) {
     EXPECT_THAT(names, IsSupersetOf(files)) << target;
     for (const std::string& name : names) {
       if (name.ends_with(".png")) continue;
-      EXPECT_THAT(textOf(out / name), testing::Not(HasSubstr("@NAME@"))) << name;
+      EXPECT_THAT(contentsOf(out / name), testing::Not(HasSubstr("@NAME@"))) << name;
     }
     EXPECT_EQ(exportTo("face", target, out).exit_code, 0) << "replaced";
     EXPECT_EQ(namesIn(out), names);
   }
-  EXPECT_THAT(textOf(folder() / "to_unity/FaceZip.shader"),
+  EXPECT_THAT(contentsOf(folder() / "to_unity/FaceZip.shader"),
               HasSubstr("albedo_difference_3 (\"albedo_difference_3\", 2D)"));
-  EXPECT_THAT(textOf(folder() / "to_godot/face.tscn"), HasSubstr("PoolStringArray( \"e00\""));
+  EXPECT_THAT(contentsOf(folder() / "to_godot/face.tscn"), HasSubstr("PoolStringArray( \"e00\""));
 }
 
 TEST_F(Export, HelpNamesEveryTarget) {
@@ -105,10 +101,18 @@ TEST_F(Export, WithoutNormalsAndWithAHundredExpressions) {
     const test::CommandResult result = exportTo("crowd", target, out);
     ASSERT_EQ(result.exit_code, 0) << target << ": " << result.error;
   }
-  EXPECT_THAT(textOf(folder() / "crowd_unity/FaceZip.hlsl"), HasSubstr("float fz_beta[100]"));
-  EXPECT_THAT(textOf(folder() / "crowd_unreal/node_albedo.hlsl"), HasSubstr("face.fz_beta[99] = beta_99;"));
-  EXPECT_THAT(textOf(folder() / "crowd_godot/face.shader"), testing::Not(HasSubstr("NORMALMAP")));
+  EXPECT_THAT(contentsOf(folder() / "crowd_unity/FaceZip.hlsl"), HasSubstr("float fz_beta[100]"));
+  EXPECT_THAT(contentsOf(folder() / "crowd_unreal/node_albedo.hlsl"), HasSubstr("face.fz_beta[99] = beta_99;"));
+  EXPECT_THAT(contentsOf(folder() / "crowd_godot/face.shader"), testing::Not(HasSubstr("NORMALMAP")));
   EXPECT_TRUE(fs::exists(folder() / "crowd_godot/textures/weights_0_1.png")) << "C = 5";
+}
+
+TEST_F(Export, SaysWhatAnEngineDoesNotGet) {
+  for (const std::string target : {"godot", "unity", "unreal"}) {
+    EXPECT_THAT(exportTo("deep", target, folder() / "deep_out").error, HasSubstr("albedo: rounded from 16 bits to 8"));
+    EXPECT_EQ(exportTo("face", target, folder() / "face_out").error, "");
+  }
+  EXPECT_EQ(exportTo("deep", "gltf", folder() / "deep_out").error, "") << "a package is copied as it is";
 }
 
 TEST_F(Export, BadInputIsRefusedAndLeavesNothing) {

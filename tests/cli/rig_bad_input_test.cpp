@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "exit_codes.hpp"
+#include "file_contents.hpp"
 #include "io/staged_directory.hpp"
 #include "rig_capture.hpp"
 #include "run_command.hpp"
@@ -157,8 +158,7 @@ TEST_F(RigBadInput, ShapesThatMoveNothingPartsApartAndTrianglesWithoutAreaAreRep
   }
   const test::CommandResult result = rig();
   EXPECT_EQ(result.exit_code, cli::kExitSuccess) << result.error;
-  std::ifstream file(package() / "rig.json");
-  const std::string json{std::istreambuf_iterator<char>(file), {}};
+  const std::string json = test::contentsOf(package() / "rig.json");
   EXPECT_THAT(json, HasSubstr("\"still_shapes\": [\n      \"nothing\""));
   EXPECT_THAT(json, testing::Not(HasSubstr("\"degenerate_triangles\": 0")));
 }
@@ -172,9 +172,7 @@ TEST_F(RigBadInput, ExamplesThatRepeatStillWork) {
     const test::CommandResult result =
         rig(std::string("--texture-solve ") + solve + " --report " + quoted(folder_ / "r.json"));
     EXPECT_EQ(result.exit_code, cli::kExitSuccess) << result.error;
-    std::ifstream file(folder_ / "r.json");
-    const std::string json{std::istreambuf_iterator<char>(file), {}};
-    EXPECT_THAT(json, HasSubstr("\"rank\": 3"));
+    EXPECT_THAT(test::contentsOf(folder_ / "r.json"), HasSubstr("\"rank\": 3"));
   }
 }
 

@@ -3,21 +3,12 @@
 #include <sys/wait.h>
 
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 
+#include "file_contents.hpp"
 #include "temporary_directory.hpp"
 
 namespace facezip::test {
 namespace fs = std::filesystem;
-namespace {
-
-std::string textOf(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
-
-}  // namespace
 
 std::string quoted(const fs::path& path) { return "'" + path.string() + "'"; }
 
@@ -28,8 +19,8 @@ CommandResult runFacezip(const std::string& arguments, const std::string& before
   const int status = std::system(command.c_str());
   CommandResult result;
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
-  result.out = textOf(folder / "out");
-  result.error = textOf(folder / "error");
+  result.out = contentsOf(folder / "out");
+  result.error = contentsOf(folder / "error");
   return result;
 }
 

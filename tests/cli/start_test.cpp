@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <iterator>
 #include <string>
 #include <thread>
 
+#include "file_contents.hpp"
 #include "host/sample_package.hpp"
 #include "run_command.hpp"
 #include "small_capture.hpp"
@@ -15,6 +15,7 @@
 namespace facezip {
 namespace {
 namespace fs = std::filesystem;
+using test::contentsOf;
 using test::quoted;
 using test::runFacezip;
 using testing::HasSubstr;
@@ -32,10 +33,6 @@ class Start : public testing::Test {
                       "FACEZIP_CACHE_DIR=" + quoted(cache) + " " + before);
   }
   std::size_t filesIn(const std::string& name) const { return test::filesBelow(folder_ / name).size(); }
-  static std::string contentsOf(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
   const test::TemporaryDirectory folder_;
 };
 

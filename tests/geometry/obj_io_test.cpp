@@ -6,6 +6,7 @@
 #include <fstream>
 #include <string>
 
+#include "../file_contents.hpp"
 #include "../temporary_directory.hpp"
 #include "facezip/error.hpp"
 #include "test_meshes.hpp"
@@ -149,8 +150,7 @@ TEST_F(ObjFile, FacesWithAndWithoutUvsAreRefused) {
 
 TEST_F(ObjFile, TruncatedFilesAreReadOrRefusedButNeverCrash) {
   writeObj(path_, test::makeSheet(3, 3));
-  std::ifstream stream(path_);
-  const std::string whole{std::istreambuf_iterator<char>(stream), {}};
+  const std::string whole = test::contentsOf(path_);
   for (std::size_t length = 0; length < whole.size(); ++length) {
     try {
       const TriangleMesh mesh = read(whole.substr(0, length));

@@ -3,12 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <iterator>
 #include <map>
 
 #include "facezip/evaluate.hpp"
 #include "facezip/reconstruct.hpp"
+#include "file_contents.hpp"
 #include "io/staged_directory.hpp"
 #include "small_capture.hpp"
 #include "temporary_directory.hpp"
@@ -33,9 +32,7 @@ std::map<std::string, std::string> filesOf(const fs::path& folder) {
   std::map<std::string, std::string> files;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
     if (!entry.is_regular_file()) continue;
-    std::ifstream stream(entry.path(), std::ios::binary);
-    files[entry.path().lexically_relative(folder).string()] = {std::istreambuf_iterator<char>(stream),
-                                                               std::istreambuf_iterator<char>()};
+    files[entry.path().lexically_relative(folder).string()] = test::contentsOf(entry.path());
   }
   return files;
 }

@@ -5,13 +5,13 @@
 #include <chrono>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <limits>
 #include <numeric>
 #include <thread>
 #include <vector>
 
 #include "facezip/error.hpp"
+#include "file_contents.hpp"
 #include "image/image_format.hpp"
 #include "temporary_directory.hpp"
 
@@ -138,8 +138,7 @@ TEST(ImageWriter, FilesDoNotDependOnTheTimeOfWriting) {
        {FileCase{"a.png", 3, image::SampleType::kUint8}, FileCase{"a.exr", 3, image::SampleType::kFloat32}}) {
     const auto bytes = [&] {
       image::writeImage(folder / file.name, ramp(9, 9, file.channels, file.type));
-      std::ifstream stream(folder / file.name, std::ios::binary);
-      return std::string(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+      return test::contentsOf(folder / file.name);
     };
     const std::string first = bytes();
     std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // headers count in seconds

@@ -4,13 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 #include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <random>
 
 #include "compress/codes/texture_encoding.hpp"
+#include "file_contents.hpp"
 #include "image/image_file.hpp"
 #include "io/staged_directory.hpp"
 #include "package/package_json.hpp"
@@ -22,14 +22,10 @@ namespace facezip {
 namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
+using test::contentsOf;
 using test::makeSample;
 using test::SamplePackage;
 using testing::HasSubstr;
-
-std::string readText(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
 
 /// Opens a package that is damaged; returns the message. Anything but an InputError fails the test.
 std::string messageOfOpening(const fs::path& directory) {
@@ -191,7 +187,7 @@ TEST(PackageJson, TruncatedAtEveryLengthIsRefused) {
   const test::TemporaryDirectory folder;
   SamplePackage sample = makeSample({{}}, 2, 1);
   test::writeSample(sample, folder.path());
-  const std::string text = readText(folder / "package.json");
+  const std::string text = contentsOf(folder / "package.json");
   for (std::size_t length = 0; length + 2 <= text.size(); ++length) {
     EXPECT_THROW(package::parsePackageJson(text.substr(0, length), "package.json"), InputError) << length;
   }
@@ -242,7 +238,7 @@ TEST_P(CorruptJson, IsRefusedByFileAndField) {
   SamplePackage sample =
       makeSample({{"albedo", 40, 24, 3, SampleType::kUint8, 8}, {"normal", 40, 24, 3, SampleType::kUint8, 8, 0, 16}});
   test::writeSample(sample, folder.path());
-  json document = json::parse(readText(folder / "package.json"));
+  json document = json::parse(contentsOf(folder / "package.json"));
   GetParam().apply(document);
   io::writeTextFile(folder / "package.json", document.dump());
   const std::string message = messageOfOpening(folder.path());
@@ -445,7 +441,7 @@ TEST_F(CorruptImage, TruncatedIsNamed) {
 
 /// Codes of 8 bits cannot stand for those of 16: the image is checked against difference_bits.
 TEST_F(CorruptImage, OfOtherBitsThanPackageJsonSaysIsNamed) {
-  json document = json::parse(readText(folder_ / "package.json"));
+  json document = json::parse(contentsOf(folder_ / "package.json"));
   document["maps"][0]["difference_bits"] = 16;
   io::writeTextFile(folder_ / "package.json", document.dump());
   EXPECT_THAT(messageOfOpening(folder_.path()),
@@ -529,9 +525,9 @@ TEST(PackageWriter, TheSameContentsGiveTheSameBytes) {
   SamplePackage again = sample;
   test::writeSample(sample, folder / "a", 7);
   test::writeSample(again, folder / "b", 24);
-  EXPECT_EQ(readText(folder / "a/package.json"), readText(folder / "b/package.json"));
+  EXPECT_EQ(contentsOf(folder / "a/package.json"), contentsOf(folder / "b/package.json"));
   for (const std::string& name : imagesOf(sample.description)) {
-    EXPECT_EQ(readText(folder / "a" / name), readText(folder / "b" / name)) << name;
+    EXPECT_EQ(contentsOf(folder / "a" / name), contentsOf(folder / "b" / name)) << name;
   }
 }
 

@@ -7,13 +7,13 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
-#include <fstream>
 #include <numeric>
 
 #include "facezip/blend.hpp"
 #include "facezip/evaluate.hpp"
 #include "facezip/geometry/obj_io.hpp"
 #include "facezip/package.hpp"
+#include "file_contents.hpp"
 #include "io/staged_directory.hpp"
 #include "rig/texture_solve.hpp"
 #include "rig/weight_guess.hpp"
@@ -113,8 +113,7 @@ TEST_F(RigTest, ShapesAreTheSubjectsAndWeightsAreRecovered) {
 }
 
 TEST_F(RigTest, TheGltfNamesItsTargets) {
-  std::ifstream file(package() / "rig.gltf");
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::string text = test::contentsOf(package() / "rig.gltf");
   for (const char* name : test::kRigShapes) EXPECT_THAT(text, testing::HasSubstr(name));
   EXPECT_THAT(text, testing::HasSubstr("albedo/neutral.png"));
 }
@@ -214,11 +213,7 @@ TEST_F(RigTest, TheSameInputGivesTheSameBytes) {
   rigCapture(openCapture(folder() / "capture"), folder() / "template", folder() / "again", quickOptions(),
              test::testDevice(), progress);
   for (const char* name : {"package.json", "weights.png", "rig.json", "rig.bin", "shapes/bumpB.obj"}) {
-    const auto bytes = [&](const fs::path& file) {
-      std::ifstream stream(file, std::ios::binary);
-      return std::string{std::istreambuf_iterator<char>(stream), {}};
-    };
-    EXPECT_EQ(bytes(folder() / "again" / name), bytes(package() / name)) << name;
+    EXPECT_EQ(test::contentsOf(folder() / "again" / name), test::contentsOf(package() / name)) << name;
   }
 }
 

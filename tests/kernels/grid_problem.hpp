@@ -32,6 +32,15 @@ inline void PrintTo(const GridCase& which, std::ostream* out) {
        << " s" << which.weight_scale << " C" << which.textures;
 }
 
+/// Sizes that divide by nothing, bands in the middle of an image, every type of samples, one to eight textures.
+inline const GridCase kGridCases[] = {{{45, 37, 3, 7, image::SampleType::kUint8}, 8, 4, 0, 0},
+                                      {{45, 32, 3, 5, image::SampleType::kUint8}, 8, 4, 32, 40},
+                                      {{70, 48, 1, 18, image::SampleType::kUint16}, 16, 3, 16, 16},
+                                      {{33, 16, 4, 4, image::SampleType::kFloat32}, 4, 2, 48, 3},
+                                      {{80, 40, 3, 9, image::SampleType::kUint8}, 32, 5, 0, 0},
+                                      {{40, 32, 3, 19, image::SampleType::kUint8}, 8, 8, 0, 0},
+                                      {{20, 17, 2, 3, image::SampleType::kUint8}, 4, 2, 16, 0}};
+
 inline constexpr float kRidge = 0.01f;
 inline constexpr float kSmoothness = 40.0f;
 inline constexpr float kTrust = 15.0f;

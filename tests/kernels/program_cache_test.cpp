@@ -8,12 +8,12 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "file_contents.hpp"
 #include "temporary_directory.hpp"
 #include "test_device.hpp"
 
@@ -22,13 +22,9 @@ namespace {
 namespace fs = std::filesystem;
 using device::DeviceContext;
 using device::ProgramCache;
+using test::contentsOf;
 
 const std::vector<unsigned char> kBinary = {1, 2, 3, 0, 255};
-
-std::string contentsOf(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 void overwrite(const fs::path& file, const std::string& contents) { std::ofstream(file, std::ios::binary) << contents; }
 

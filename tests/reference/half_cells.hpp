@@ -22,6 +22,9 @@ struct HalfCellFit {
 
 /// deltas  square root of the texel weight times Delta of each texel and channel, N x (texels * channels)
 inline HalfCellFit fitHalfCell(const Eigen::MatrixXd& w, const Eigen::MatrixXd& deltas, double ridge) {
+  if (deltas.cols() == 0) {  // Eigen's solver takes no right-hand side for a mistake
+    return {Eigen::MatrixXd::Zero(w.rows(), w.rows()), Eigen::MatrixXd::Zero(w.rows(), w.cols()), 0.0};
+  }
   const Eigen::MatrixXd a = w * w.transpose() + ridge * Eigen::MatrixXd::Identity(w.rows(), w.rows());
   const Eigen::MatrixXd d = a.ldlt().solve(w * deltas);
   return {d * d.transpose(), d * deltas.transpose(), (deltas - w.transpose() * d).squaredNorm()};

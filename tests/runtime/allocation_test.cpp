@@ -18,9 +18,13 @@ namespace {
 std::atomic<long> g_news = 0;
 std::atomic<long> g_buffers = 0;
 
-void* allocate(std::size_t bytes) {
+void* allocate(std::size_t bytes, const std::nothrow_t& /*unused*/) noexcept {
   ++g_news;
-  if (void* memory = std::malloc(bytes == 0 ? 1 : bytes)) return memory;
+  return std::malloc(bytes == 0 ? 1 : bytes);
+}
+
+void* allocate(std::size_t bytes) {
+  if (void* memory = allocate(bytes, std::nothrow)) return memory;
   throw std::bad_alloc();
 }
 
@@ -35,6 +39,8 @@ void* allocate(std::size_t bytes, std::align_val_t alignment) {
 
 void* operator new(std::size_t bytes) { return allocate(bytes); }
 void* operator new[](std::size_t bytes) { return allocate(bytes); }
+void* operator new(std::size_t bytes, const std::nothrow_t& none) noexcept { return allocate(bytes, none); }
+void* operator new[](std::size_t bytes, const std::nothrow_t& none) noexcept { return allocate(bytes, none); }
 void* operator new(std::size_t bytes, std::align_val_t alignment) { return allocate(bytes, alignment); }
 void* operator new[](std::size_t bytes, std::align_val_t alignment) { return allocate(bytes, alignment); }
 void operator delete(void* memory) noexcept { std::free(memory); }

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """A capture whose rig is known: another subject made of a capture's neutral and its template, with the truth beside it.
 
-    bench/rig_subject.py CAPTURE TEMPLATE WEIGHTS OUTPUT [--seed 1] [--resolution 512] [--amount 0.05]
+    bench/rig_subject.py CAPTURE TEMPLATE WEIGHTS OUTPUT [--seed 1] [--resolution 512] [--amount 0.05] [--head-motion 3]
 
 CAPTURE   neutral.obj, albedo/neutral.png, face_region.txt or coverage.png
 TEMPLATE  neutral.obj or generic_neutral.obj and an OBJ for each shape
@@ -270,6 +270,19 @@ def perform(weights, deltas, positions, scale, random):
     return positions + moved + 0.015 * size * residue
 
 
+def moved_head(positions, scale, random, degrees):
+    """The mesh after the head turned about a random axis through its centre and moved along another."""
+    if degrees == 0:
+        return positions
+    axis, shift = random.normal(size=(2, 3))
+    axis *= numpy.radians(random.uniform(0, degrees)) / numpy.linalg.norm(axis)
+    cross = numpy.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
+    angle = numpy.linalg.norm(axis)
+    turn = numpy.eye(3) + numpy.sin(angle) / angle * cross + (1 - numpy.cos(angle)) / angle ** 2 * cross @ cross
+    centre = positions.mean(0)
+    return (positions - centre) @ turn.T + centre + random.uniform(0, scale) * shift / numpy.linalg.norm(shift)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     for name in ("capture", "template", "weights", "output"):
@@ -277,8 +290,11 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--resolution", type=int, default=512)
     parser.add_argument("--amount", type=float, default=0.05, help="how far the subject's shapes differ")
+    parser.add_argument("--head-motion", type=float, default=0.0, metavar="DEGREES",
+                        help="how far the head turns at most between scans; it also moves by a thirtieth of its height")
     arguments = parser.parse_args()
     random = numpy.random.default_rng(arguments.seed)
+    motions = numpy.random.default_rng([arguments.seed, 1])  # by themselves: the rest is the same with and without
     source, uvs, triangles, uv_triangles, rest = read_obj(arguments.capture / "neutral.obj")
     template, shapes = template_of(arguments.template)
     names = list(shapes)
@@ -309,7 +325,7 @@ def main():
                 shutil.copyfile(arguments.capture / extra, folder / extra)
     for name, row in rows.items():
         posed = perform(row, deltas, neutral, scale, random)
-        write_obj(capture / "expressions" / (name + ".obj"), posed, rest)
+        write_obj(capture / "expressions" / (name + ".obj"), moved_head(posed, scale, motions, arguments.head_motion), rest)
         image = to_bytes(flawed(albedo + skin.change(posed, 0.5 * random.normal()), random))
         Image.fromarray(image).save(capture / "albedo" / (name + ".png"))
     for name, delta in zip(names, deltas):

@@ -93,6 +93,9 @@ class Fit {
     Start& start = rig_.transfer == Transfer::kGradients ? gradients : displacements;
     rig_.transferred = std::move(start.shapes);
     rig_.transferred_weights = std::move(start.weights);
+    rig_.examples = std::move(start.examples);
+    rig_.head_motions = std::move(start.motions);
+    rig_.rigid_share = start.rigid_share;
     rig_.template_residuals = std::move(start.residuals);
     rig_.shapes = rig_.transferred;
     anchorWeights();
@@ -108,7 +111,7 @@ class Fit {
     if (problem_.guess.rows() == 0) return;
     const WeightSolver weights(problem_.neutral, rig_.transferred);
     for (Eigen::Index n = 0; n < examples_; ++n) {
-      const auto& example = problem_.examples[static_cast<std::size_t>(n)];
+      const auto& example = rig_.examples[static_cast<std::size_t>(n)];
       anchor_.row(n) =
           weights.solve(weights.project(example), problem_.guess.row(n).transpose(), options_.guess_prior).transpose();
     }
@@ -128,22 +131,41 @@ class Fit {
   struct Start {
     std::vector<Eigen::MatrixX3d> shapes;
     Eigen::MatrixXd weights;
+    std::vector<Eigen::MatrixX3d> examples;
+    std::vector<Similarity> motions;
     std::vector<Distances> residuals;
     double rms = 0.0;
+    double rigid_share = 0.0;
   };
 
   /// The bounded fit of shapes as they are.
   Start bestWeights(std::vector<Eigen::MatrixX3d> shapes) const {
-    const WeightSolver weights(problem_.neutral, shapes);
-    Start start{std::move(shapes), Eigen::MatrixXd(examples_, shapes_), {}, 0.0};
+    const WeightSolver rig(problem_.neutral, shapes);
+    Start start;
+    start.shapes = std::move(shapes);
+    start.weights.resize(examples_, shapes_);
+    start.examples = problem_.examples;
+    double squares = 0.0, without_motion = 0.0;
     for (Eigen::Index n = 0; n < examples_; ++n) {
-      const auto& example = problem_.examples[static_cast<std::size_t>(n)];
-      const Eigen::VectorXd w = weights.solve(weights.project(example), Eigen::VectorXd::Zero(shapes_), 0.0);
+      Eigen::MatrixX3d& example = start.examples[static_cast<std::size_t>(n)];
+      Eigen::VectorXd w;
+      if (options_.head_motion) {
+        StilledMesh stilled = stillHead(rig, example);
+        example = std::move(stilled.mesh);
+        start.motions.push_back(stilled.motion);
+        w = std::move(stilled.weights);
+      } else {
+        w = rig.solve(rig.project(example), Eigen::VectorXd::Zero(shapes_), 0.0);
+      }
       start.weights.row(n) = w.transpose();
-      start.residuals.push_back(distancesBetween(weights.pose(w), example));
-      start.rms += start.residuals.back().rms * start.residuals.back().rms;
+      const Eigen::MatrixX3d posed = rig.pose(w);
+      start.residuals.push_back(distancesBetween(posed, example));
+      squares += start.residuals.back().rms * start.residuals.back().rms;
+      const double rms = distancesBetween(posed, undo(rig.headMotion(posed, example), example)).rms;
+      without_motion += rms * rms;
     }
-    start.rms = std::sqrt(start.rms / static_cast<double>(examples_));
+    start.rms = std::sqrt(squares / static_cast<double>(examples_));
+    start.rigid_share = squares > 0.0 ? 1.0 - without_motion / squares : 0.0;
     return start;
   }
 
@@ -155,10 +177,24 @@ class Fit {
       prior_.middleCols<3>(3 * m) = gradient_.of(rig_.transferred[static_cast<std::size_t>(m)]);
       still_.col(m) = stillVertices(problem_.template_neutral, shape - problem_.template_neutral);
     }
+    observeExamples();
+  }
+
+  void observeExamples() {
     observed_.resize(2 * gradient_.triangles(), 3 * examples_);
     for (Eigen::Index n = 0; n < examples_; ++n) {
-      observed_.middleCols<3>(3 * n) = gradient_.of(problem_.examples[static_cast<std::size_t>(n)] - problem_.neutral);
+      observed_.middleCols<3>(3 * n) = gradient_.of(rig_.examples[static_cast<std::size_t>(n)] - problem_.neutral);
     }
+  }
+
+  /// The heads' motions again, with the shapes as they have become: the template's explained less of the expression.
+  void followHeads(const WeightSolver& rig) {
+    for (Eigen::Index n = 0; n < examples_; ++n) {
+      const auto i = static_cast<std::size_t>(n);
+      rig_.head_motions[i] = rig.headMotion(rig.pose(rig_.weights.row(n).transpose()), problem_.examples[i]);
+      rig_.examples[i] = undo(rig_.head_motions[i], problem_.examples[i]);
+    }
+    observeExamples();
   }
 
   /// Residuals of the examples with the current weights.
@@ -167,8 +203,8 @@ class Fit {
     double squares = 0.0;
     for (Eigen::Index n = 0; n < examples_; ++n) {
       Distances& residual = rig_.residuals[static_cast<std::size_t>(n)];
-      residual = distancesBetween(weights.pose(rig_.weights.row(n).transpose()),
-                                  problem_.examples[static_cast<std::size_t>(n)]);
+      residual =
+          distancesBetween(weights.pose(rig_.weights.row(n).transpose()), rig_.examples[static_cast<std::size_t>(n)]);
       squares += residual.rms * residual.rms;
     }
     rig_.convergence.push_back(std::sqrt(squares / static_cast<double>(examples_)));
@@ -276,11 +312,12 @@ class Fit {
   void fitWeights(double strength) {
     const WeightSolver weights(problem_.neutral, rig_.shapes);
     for (Eigen::Index n = 0; n < examples_; ++n) {
-      rig_.weights.row(n) = weights
-                                .solve(weights.project(problem_.examples[static_cast<std::size_t>(n)]),
-                                       anchor_.row(n).transpose(), strength)
-                                .transpose();
+      rig_.weights.row(n) =
+          weights
+              .solve(weights.project(rig_.examples[static_cast<std::size_t>(n)]), anchor_.row(n).transpose(), strength)
+              .transpose();
     }
+    if (options_.head_motion) followHeads(weights);
     measure(weights);
   }
 

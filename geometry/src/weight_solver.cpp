@@ -57,8 +57,4 @@ Similarity WeightSolver::headMotion(const Eigen::MatrixX3d& posed, const Eigen::
   return fitSimilarity(posed, mesh, mask_, /* fixed_scale= */ true);
 }
 
-Eigen::MatrixX3d undo(const Similarity& motion, const Eigen::MatrixX3d& mesh) {
-  return (mesh.rowwise() - motion.shift) * motion.turn / motion.scale;
-}
-
 }  // namespace facezip::geometry

@@ -21,6 +21,7 @@ void addRigCommand(CLI::App& app, const CommonOptions& common) {
     int iterations = geometry::ExampleRigOptions{}.iterations;
     std::string transfer = "best";
     std::string texture_solve = "local";
+    bool head_motion = false;
     double texture_damping = 0.0;
     std::string device = "auto";
     std::string report;
@@ -59,6 +60,8 @@ void addRigCommand(CLI::App& app, const CommonOptions& common) {
                    "pseudo-inverse (the FaceZip paper's)")
       ->check(CLI::IsMember({"local", "damped", "pseudo-inverse"}))
       ->capture_default_str();
+  command->add_flag("--head-motion", arguments->head_motion,
+                    "Take the rigid motion of the head out of every expression's mesh");
   CLI::Option* damping =
       command
           ->add_option("--texture-damping", arguments->texture_damping,
@@ -78,6 +81,7 @@ void addRigCommand(CLI::App& app, const CommonOptions& common) {
     options.fit.transfer = arguments->transfer == "gradients"       ? geometry::ShapeTransfer::kGradients
                            : arguments->transfer == "displacements" ? geometry::ShapeTransfer::kDisplacements
                                                                     : geometry::ShapeTransfer::kBest;
+    options.fit.head_motion = arguments->head_motion;
     options.guess = arguments->guess;
     options.texture_solve = arguments->texture_solve == "damped"           ? TextureSolve::kDamped
                             : arguments->texture_solve == "pseudo-inverse" ? TextureSolve::kPseudoInverse

@@ -208,6 +208,13 @@ void printRigReport(const RigReport& report) {
     add(template_mean, report.template_residuals[n]);
   }
   row("mean", mean, template_mean);
+  if (!report.head_motions.empty()) {
+    RigHeadMotion most;
+    for (const RigHeadMotion& motion : report.head_motions) {
+      most = {std::max(most.degrees, motion.degrees), std::max(most.millimetres, motion.millimetres)};
+    }
+    fmt::print("head motion taken out: up to {:.2f} degrees, {:.2f} mm\n", most.degrees, most.millimetres);
+  }
   fmt::print("rms over all, mm, after each iteration:");
   for (const double rms : report.convergence) fmt::print(" {:.3f}", rms);
   fmt::print("\ncloseness to the template {:g}: left-out expressions' gradients err {:.2f} of what the template errs",

@@ -2,7 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "exit_codes.hpp"
@@ -161,6 +163,33 @@ TEST_F(RigBadInput, ShapesThatMoveNothingPartsApartAndTrianglesWithoutAreaAreRep
   const std::string json = test::contentsOf(package() / "rig.json");
   EXPECT_THAT(json, HasSubstr("\"still_shapes\": [\n      \"nothing\""));
   EXPECT_THAT(json, testing::Not(HasSubstr("\"degenerate_triangles\": 0")));
+}
+
+TEST_F(RigBadInput, HeadsThatMoveAreNoticedAndHeldStill) {
+  const auto expressions = [&] { return nlohmann::json::parse(test::contentsOf(folder_ / "r.json"))["expressions"]; };
+  const std::string report = "--report " + quoted(folder_ / "r.json");
+  EXPECT_THAT(rig(report).error, testing::Not(HasSubstr("--head-motion")));
+  const nlohmann::json still = expressions();
+  EXPECT_FALSE(still[0].contains("head_motion"));
+  for (int n = 0; n < 4; ++n) {
+    const fs::path file = capture() / "expressions" / ("r" + std::to_string(n) + ".obj");
+    geometry::TriangleMesh mesh = geometry::readObj(file);
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.05 * (n + 1), Eigen::Vector3d::UnitX()).matrix();
+    mesh.positions = (mesh.positions * turn.transpose()).rowwise() + Eigen::RowVector3d(0.02, -0.01 * n, 0.01);
+    geometry::writeObj(file, mesh);
+  }
+  EXPECT_THAT(rig(report).error, HasSubstr("--head-motion takes that out"));
+  const test::CommandResult held = rig("--head-motion " + report);
+  EXPECT_THAT(held.error, testing::Not(HasSubstr("--head-motion")));
+  EXPECT_THAT(held.out, HasSubstr("head motion taken out: up to 11."));
+  const nlohmann::json moved = expressions();
+  for (std::size_t n = 0; n < 4; ++n) {
+    EXPECT_NEAR(moved[n]["head_motion"]["degrees"].get<double>(), 0.05 * static_cast<double>(n + 1) * 57.3, 0.5);
+    EXPECT_NEAR(moved[n]["residual_mm"]["mean"].get<double>(), still[n]["residual_mm"]["mean"].get<double>(), 0.02);
+    for (const char* shape : test::kRigShapes) {
+      EXPECT_NEAR(moved[n]["weights"].value(shape, 0.0), still[n]["weights"].value(shape, 0.0), 0.1) << n << shape;
+    }
+  }
 }
 
 TEST_F(RigBadInput, ExamplesThatRepeatStillWork) {

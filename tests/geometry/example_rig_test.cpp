@@ -95,6 +95,38 @@ TEST(ExampleRig, RecoversWeightsFromARoughGuess) {
   EXPECT_LT(subject.shapeError(rig.shapes), 0.8 * subject.shapeError(rig.transferred));
 }
 
+TEST(ExampleRig, TakesTheHeadsMotionOut) {
+  const Subject subject;
+  const ExampleRig still = fitExampleRig(subject.problem, {});
+  EXPECT_LT(still.rigid_share, 0.5);
+  EXPECT_TRUE(still.head_motions.empty());
+
+  RigProblem moved = subject.problem;
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  std::vector<Similarity> motions(moved.examples.size());
+  for (std::size_t n = 0; n < motions.size(); ++n) {
+    const Eigen::Vector3d axis(uniform(random), uniform(random), uniform(random));
+    motions[n].turn = Eigen::AngleAxisd(0.1 * uniform(random), axis.normalized()).matrix();
+    motions[n].shift << uniform(random), uniform(random), uniform(random);
+    moved.examples[n] = motions[n].apply(moved.examples[n]);
+  }
+  EXPECT_GT(fitExampleRig(moved, {}).rigid_share, 0.5);
+
+  ExampleRigOptions options;
+  options.head_motion = true;
+  const ExampleRig rig = fitExampleRig(moved, options);
+  EXPECT_LT(subject.shapeError(rig.shapes), 1.2 * subject.shapeError(still.shapes));
+  EXPECT_LT((rig.weights - subject.weights).cwiseAbs().mean(),
+            1.2 * (still.weights - subject.weights).cwiseAbs().mean());
+  EXPECT_LT(rig.convergence.back(), 1.2 * still.convergence.back());
+  ASSERT_EQ(rig.head_motions.size(), motions.size());
+  for (std::size_t n = 0; n < motions.size(); ++n) {
+    EXPECT_LT((rig.head_motions[n].turn - motions[n].turn).norm(), 0.02) << n;
+    EXPECT_LT(distancesBetween(rig.examples[n], subject.problem.examples[n]).rms, 0.1) << n;
+  }
+}
+
 TEST(ExampleRig, ATemplateThatIsTheSubjectStaysAsItIs) {
   Subject subject;
   for (std::size_t m = 0; m < subject.shapes.size(); ++m) {

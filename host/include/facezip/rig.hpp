@@ -40,6 +40,12 @@ struct RigResidual {
   double largest = 0.0;
 };
 
+/// The rigid motion of the head that was taken out of an expression.
+struct RigHeadMotion {
+  double degrees = 0.0;      ///< how far it turned
+  double millimetres = 0.0;  ///< how far that and its shift took the neutral's vertices, on average
+};
+
 struct RigReport {
   std::vector<std::string> expressions;  ///< N, as the capture names them
   /// N: as the package names them: `NAME_captured` where a shape has the name already.
@@ -48,6 +54,7 @@ struct RigReport {
   std::vector<std::vector<double>> weights;     ///< N x M, in [0, 1]
   std::vector<RigResidual> residuals;           ///< N: re-posed by the rig
   std::vector<RigResidual> template_residuals;  ///< N: by the template's shapes on the subject, weights fitted freely
+  std::vector<RigHeadMotion> head_motions;      ///< N; empty unless they were taken out
   std::vector<double> convergence;  ///< rms over all expressions in mm, at the start and after each iteration
   std::string transfer;             ///< "deformation gradients" or "displacements"
   double shape_prior = 0.0;         ///< closeness of the shapes to the template's (geometry::ExampleRig)

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <numbers>
 
 #include "compress/stage_clock.hpp"
 #include "facezip/package.hpp"
@@ -21,6 +23,8 @@ namespace fs = std::filesystem;
 
 /// A shape that no expression uses by more than this is the template's own.
 constexpr double kSeen = 0.05;
+/// A rigid motion that explains more of what the template leaves is the head's.
+constexpr double kMovingHead = 0.5;
 
 RigResidual inMillimetres(const geometry::Distances& distances, double scale) {
   return {scale * distances.mean, scale * distances.percentile_99, scale * distances.largest};
@@ -49,6 +53,11 @@ std::vector<std::string> packageNamesOf(const std::vector<std::string>& expressi
     progress.note(fmt::format("\"{}\" names a shape too: the captured expression is \"{}\"", before, name));
   }
   return renamed;
+}
+
+RigHeadMotion headMotionOf(const geometry::Similarity& motion, const Eigen::MatrixX3d& neutral, double scale) {
+  const double degrees = Eigen::AngleAxisd(motion.turn).angle() * 180.0 / std::numbers::pi;
+  return {degrees, scale * geometry::distancesBetween(motion.apply(neutral), neutral).mean};
 }
 
 class Rigging {
@@ -119,6 +128,10 @@ class Rigging {
       report_.template_residuals.push_back(inMillimetres(residual, scale));
     }
     for (const double rms : rig_.convergence) report_.convergence.push_back(scale * rms);
+    for (const geometry::Similarity& motion : rig_.head_motions) {
+      report_.head_motions.push_back(headMotionOf(motion, problem_.neutral, scale));
+    }
+    subject_.expressions = rig_.examples;  // as the rig poses them: without the head's motion
     report_.transfer = rig_.transfer == geometry::ShapeTransfer::kGradients ? "deformation gradients" : "displacements";
     report_.shape_prior = rig_.shape_prior;
     report_.left_out_share = rig_.left_out_template > 0.0 ? rig_.left_out / rig_.left_out_template : 1.0;
@@ -135,6 +148,12 @@ class Rigging {
   }
 
   void noteWhatIsUnusual() {
+    if (!options_.fit.head_motion && rig_.rigid_share > kMovingHead) {
+      progress_.note(
+          fmt::format("{:.0f} % of what the template does not explain of the expressions is rigid motion: "
+                      "if the head was not held still, --head-motion takes that out",
+                      100.0 * rig_.rigid_share));
+    }
     if (4 * report_.expressions.size() < report_.shapes.size()) {
       progress_.note(fmt::format("{} expressions for {} shapes: most of the rig is the template's",
                                  report_.expressions.size(), report_.shapes.size()));

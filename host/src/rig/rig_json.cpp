@@ -35,11 +35,16 @@ std::string rigJson(const RigReport& report, double millimetres_per_unit) {
     for (std::size_t m = 0; m < report.shapes.size(); ++m) {
       if (report.weights[n][m] > 0.0) weights[report.shapes[m]] = report.weights[n][m];
     }
-    document["expressions"].push_back({{"name", report.package_expressions[n]},
-                                       {"captured", report.expressions[n]},
-                                       {"weights", weights},
-                                       {"residual_mm", residualJson(report.residuals[n])},
-                                       {"template_residual_mm", residualJson(report.template_residuals[n])}});
+    ordered_json expression = {{"name", report.package_expressions[n]},
+                               {"captured", report.expressions[n]},
+                               {"weights", weights},
+                               {"residual_mm", residualJson(report.residuals[n])},
+                               {"template_residual_mm", residualJson(report.template_residuals[n])}};
+    if (!report.head_motions.empty()) {
+      const RigHeadMotion& motion = report.head_motions[n];
+      expression["head_motion"] = {{"degrees", motion.degrees}, {"mm", motion.millimetres}};
+    }
+    document["expressions"].push_back(std::move(expression));
   }
   document["fit"] = {{"transfer", report.transfer},
                      {"closeness", report.shape_prior},

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "facezip/geometry/head_motion.hpp"
 #include "facezip/geometry/obj_io.hpp"
 #include "facezip/geometry/topology.hpp"
 #include "facezip/geometry/weight_solver.hpp"
@@ -17,9 +18,6 @@ namespace fs = std::filesystem;
 
 // Frames that are in memory at once.
 constexpr std::size_t kBatch = 64;
-// Rounds of pose and motion; most heads need three.
-constexpr int kMotionRounds = 20;
-constexpr double kMotionSettled = 1e-5;
 // Sweeps over the frames of a smoothed clip.
 constexpr int kSmoothingSweeps = 200;
 constexpr double kSmoothingSettled = 1e-5;
@@ -66,20 +64,12 @@ class ClipSolver {
 
   /// A frame by itself.
   Frame solve(const Eigen::MatrixX3d& mesh) const {
-    Frame frame;
-    frame.weights = Eigen::VectorXd::Zero(solver_.shapes());
-    frame.projected = solver_.project(mesh);
-    if (!options_.head_motion) {
-      frame.weights = solver_.solve(frame.projected, frame.weights, 0.0);
-      return frame;
+    if (options_.head_motion) {
+      const geometry::StilledMesh stilled = geometry::stillHead(solver_, mesh);
+      return {solver_.project(stilled.mesh), stilled.weights};
     }
-    for (int round = 0; round < kMotionRounds; ++round) {
-      frame.projected = solver_.project(still(mesh, frame.weights));
-      const Eigen::VectorXd next = solver_.solve(frame.projected, frame.weights, 0.0);
-      const double change = (next - frame.weights).cwiseAbs().maxCoeff();
-      frame.weights = next;
-      if (change < kMotionSettled) break;
-    }
+    Frame frame{solver_.project(mesh), {}};
+    frame.weights = solver_.solve(frame.projected, Eigen::VectorXd::Zero(solver_.shapes()), 0.0);
     return frame;
   }
 

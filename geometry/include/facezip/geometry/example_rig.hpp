@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "facezip/geometry/weight_solver.hpp"
+#include "facezip/geometry/head_motion.hpp"
 
 namespace facezip::geometry {
 
@@ -41,6 +41,7 @@ struct ExampleRigOptions {
   ShapeTransfer transfer = ShapeTransfer::kBest;
   double kappa = 0.1;  ///< of the closeness' own weights (Eq. 6)
   double theta = 2.0;
+  bool head_motion = false;  ///< find the rigid motion of the head in each example and take it out
 };
 
 struct ExampleRig {
@@ -54,10 +55,14 @@ struct ExampleRig {
   std::vector<Distances> residuals;           ///< of each example as the rig poses it
   std::vector<Distances> template_residuals;  ///< as the transferred shapes pose it
   std::vector<double> convergence;            ///< rms over all examples, at the start and after each iteration
-  double shape_prior = 0.0;                   ///< beta that was taken
-  double left_out = 0.0;                      ///< error of the examples' gradients, each predicted from the others ...
-  double left_out_template = 0.0;             ///< ... and of the transferred shapes alone
-  int degenerate_triangles = 0;               ///< of the neutral; they follow their neighbours
+  std::vector<Similarity> head_motions;       ///< N, of each example; empty unless they are taken out
+  std::vector<Eigen::MatrixX3d> examples;     ///< N, what the rig was fitted to: without these motions
+  double rigid_share =
+      0.0;  ///< of the squared distance that the transferred shapes leave: what a rigid motion explains
+  double shape_prior = 0.0;        ///< beta that was taken
+  double left_out = 0.0;           ///< error of the examples' gradients, each predicted from the others ...
+  double left_out_template = 0.0;  ///< ... and of the transferred shapes alone
+  int degenerate_triangles = 0;    ///< of the neutral; they follow their neighbours
 };
 
 /// Fits the rig. Vertices that a template shape does not move stay put in the subject's too.

@@ -50,7 +50,4 @@ class WeightSolver {
   Eigen::MatrixXd hessian_;
 };
 
-/// The mesh as it would be without the motion.
-Eigen::MatrixX3d undo(const Similarity& motion, const Eigen::MatrixX3d& mesh);
-
 }  // namespace facezip::geometry

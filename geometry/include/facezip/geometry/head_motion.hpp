@@ -1,0 +1,25 @@
+// head_motion.hpp - what of a mesh is the head's rigid motion, and what its expression.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "facezip/geometry/weight_solver.hpp"
+
+namespace facezip::geometry {
+
+/// A mesh as a rig poses it.
+struct StilledMesh {
+  Similarity motion;        ///< rigid: takes `mesh` onto what was given
+  Eigen::MatrixX3d mesh;    ///< what was given without the motion, #V by 3
+  Eigen::VectorXd weights;  ///< M, in [0, 1]
+};
+
+/// Weights and rigid motion that pose a rig like `mesh`, by turns: bounded least squares, then Umeyama's alignment,
+/// until the weights settle (by 1e-5) or 20 rounds are over. Either lowers the squared distance, so their sum falls.
+/// mesh  #V by 3 of the rig's vertices
+StilledMesh stillHead(const WeightSolver& rig, const Eigen::MatrixX3d& mesh);
+
+/// The mesh as it would be without the motion.
+Eigen::MatrixX3d undo(const Similarity& motion, const Eigen::MatrixX3d& mesh);
+
+}  // namespace facezip::geometry

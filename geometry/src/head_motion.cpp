@@ -1,5 +1,7 @@
 #include "facezip/geometry/head_motion.hpp"
 
+#include <algorithm>
+
 namespace facezip::geometry {
 namespace {
 
@@ -21,6 +23,18 @@ StilledMesh stillHead(const WeightSolver& rig, const Eigen::MatrixX3d& mesh) {
   }
   return found;
 }
+
+void RigidShare::add(const WeightSolver& rig, const Eigen::MatrixX3d& posed, const Eigen::MatrixX3d& mesh) {
+  squares_ += (posed - mesh).squaredNorm();
+  without_motion_ += (posed - undo(rig.headMotion(posed, mesh), mesh)).squaredNorm();
+}
+
+void RigidShare::add(const RigidShare& other) {
+  squares_ += other.squares_;
+  without_motion_ += other.without_motion_;
+}
+
+double RigidShare::value() const { return squares_ > 0.0 ? std::max(0.0, 1.0 - without_motion_ / squares_) : 0.0; }
 
 Eigen::MatrixX3d undo(const Similarity& motion, const Eigen::MatrixX3d& mesh) {
   return (mesh.rowwise() - motion.shift) * motion.turn / motion.scale;

@@ -180,6 +180,10 @@ TEST_F(RigBadInput, HeadsThatMoveAreNoticedAndHeldStill) {
   }
   EXPECT_THAT(rig(report).error, HasSubstr("--head-motion takes that out"));
   const test::CommandResult held = rig("--head-motion " + report);
+  const std::string solve = "solve-weights " + quoted(package()) + " " + quoted(capture() / "expressions") +
+                            " --output " + quoted(folder_ / "clip.csv");
+  EXPECT_THAT(runFacezip(solve).error, HasSubstr("--head-motion takes that out"));
+  EXPECT_EQ(runFacezip(solve + " --head-motion").error, "");
   EXPECT_THAT(held.error, testing::Not(HasSubstr("--head-motion")));
   EXPECT_THAT(held.out, HasSubstr("head motion taken out: up to 11."));
   const nlohmann::json moved = expressions();

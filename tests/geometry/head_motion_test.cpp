@@ -54,6 +54,22 @@ TEST(HeadMotion, OfAMeshThatDidNotMoveIsNone) {
   EXPECT_LT((stilled.mesh - posed).rowwise().norm().maxCoeff(), 1e-3);
 }
 
+TEST(HeadMotion, IsMostOfWhatAPoseMissesWhereTheHeadMoved) {
+  const Sheet sheet;
+  const Eigen::MatrixX3d posed = sheet.rig.pose(Eigen::Vector2d(0.5, 0.5));
+  EXPECT_EQ(RigidShare().value(), 0.0);
+  RigidShare moved;
+  moved.add(sheet.rig, posed, someMotion().apply(posed));
+  EXPECT_GT(moved.value(), 0.999);
+  RigidShare expression;  // a bump that the rig does not have is no rigid motion
+  expression.add(sheet.rig, posed, posed + Sheet::bump(6.0, 6.0));
+  EXPECT_LT(expression.value(), 0.5);
+  RigidShare both = expression;
+  both.add(moved);
+  EXPECT_GT(both.value(), expression.value());
+  EXPECT_LT(both.value(), moved.value());
+}
+
 TEST(HeadMotion, IsUndone) {
   const Sheet sheet;
   EXPECT_LT((undo(someMotion(), someMotion().apply(sheet.neutral)) - sheet.neutral).norm(), 1e-12);

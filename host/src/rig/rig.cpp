@@ -11,6 +11,7 @@
 #include "compress/stage_clock.hpp"
 #include "facezip/package.hpp"
 #include "io/staged_directory.hpp"
+#include "rig/moving_head.hpp"
 #include "rig/rig_json.hpp"
 #include "rig/rig_meshes.hpp"
 #include "rig/rig_weights.hpp"
@@ -23,8 +24,6 @@ namespace fs = std::filesystem;
 
 /// A shape that no expression uses by more than this is the template's own.
 constexpr double kSeen = 0.05;
-/// A rigid motion that explains more of what the template leaves is the head's.
-constexpr double kMovingHead = 0.5;
 
 RigResidual inMillimetres(const geometry::Distances& distances, double scale) {
   return {scale * distances.mean, scale * distances.percentile_99, scale * distances.largest};
@@ -148,11 +147,9 @@ class Rigging {
   }
 
   void noteWhatIsUnusual() {
-    if (!options_.fit.head_motion && rig_.rigid_share > kMovingHead) {
-      progress_.note(
-          fmt::format("{:.0f} % of what the template does not explain of the expressions is rigid motion: "
-                      "if the head was not held still, --head-motion takes that out",
-                      100.0 * rig_.rigid_share));
+    if (!options_.fit.head_motion) {
+      noteMovingHead("the template does not explain of the expressions", rig_.rigid_share, report_.template_residuals,
+                     progress_);
     }
     if (4 * report_.expressions.size() < report_.shapes.size()) {
       progress_.note(fmt::format("{} expressions for {} shapes: most of the rig is the template's",

@@ -11,6 +11,7 @@
 #include "facezip/geometry/weight_solver.hpp"
 #include "facezip/rig.hpp"
 #include "io/staged_directory.hpp"
+#include "rig/moving_head.hpp"
 
 namespace facezip {
 namespace {
@@ -18,6 +19,8 @@ namespace fs = std::filesystem;
 
 // Frames that are in memory at once.
 constexpr std::size_t kBatch = 64;
+// Frames that are looked at for a head that moves.
+constexpr std::size_t kRigidEvery = 16;
 // Sweeps over the frames of a smoothed clip.
 constexpr int kSmoothingSweeps = 200;
 constexpr double kSmoothingSettled = 1e-5;
@@ -60,15 +63,16 @@ class ClipSolver {
   struct Frame {
     Eigen::VectorXd projected;  ///< B^T (mesh - neutral), without the head's motion
     Eigen::VectorXd weights;
+    geometry::RigidShare rigid;  ///< of some frames
   };
 
   /// A frame by itself.
   Frame solve(const Eigen::MatrixX3d& mesh) const {
     if (options_.head_motion) {
       const geometry::StilledMesh stilled = geometry::stillHead(solver_, mesh);
-      return {solver_.project(stilled.mesh), stilled.weights};
+      return {solver_.project(stilled.mesh), stilled.weights, {}};
     }
-    Frame frame{solver_.project(mesh), {}};
+    Frame frame{solver_.project(mesh), {}, {}};
     frame.weights = solver_.solve(frame.projected, Eigen::VectorXd::Zero(solver_.shapes()), 0.0);
     return frame;
   }
@@ -90,6 +94,12 @@ class ClipSolver {
       }
       if (change < kSmoothingSettled) break;
     }
+  }
+
+  geometry::RigidShare rigidShare(const Eigen::MatrixX3d& mesh, const Eigen::VectorXd& weights) const {
+    geometry::RigidShare share;
+    share.add(solver_, solver_.pose(weights), mesh);
+    return share;
   }
 
   RigResidual residual(const Eigen::MatrixX3d& mesh, const Eigen::VectorXd& weights) const {
@@ -144,6 +154,7 @@ SolvedClip solveWeights(const fs::path& package, const std::vector<fs::path>& me
   };
   forEachFrame("solving weights", [&](std::size_t f, const Eigen::MatrixX3d& mesh) {
     frames[f] = solver.solve(mesh);
+    if (f % kRigidEvery == 0) frames[f].rigid = solver.rigidShare(mesh, frames[f].weights);
     if (!smoothed) clip.residuals[f] = solver.residual(mesh, frames[f].weights);
   });
   if (smoothed) {
@@ -153,6 +164,11 @@ SolvedClip solveWeights(const fs::path& package, const std::vector<fs::path>& me
     });
   }
   for (const ClipSolver::Frame& frame : frames) clip.weights.emplace_back(frame.weights.begin(), frame.weights.end());
+  if (!options.head_motion) {
+    geometry::RigidShare rigid;
+    for (const ClipSolver::Frame& frame : frames) rigid.add(frame.rigid);
+    rig::noteMovingHead("the rig does not explain of the meshes", rigid.value(), clip.residuals, progress);
+  }
   clip.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return clip;
 }

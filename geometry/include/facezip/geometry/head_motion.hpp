@@ -19,6 +19,20 @@ struct StilledMesh {
 /// mesh  #V by 3 of the rig's vertices
 StilledMesh stillHead(const WeightSolver& rig, const Eigen::MatrixX3d& mesh);
 
+/// What a rigid motion explains of the squared distances between meshes and the poses of a rig. Where weights cannot
+/// follow because the head moves it is most of it.
+class RigidShare {
+ public:
+  void add(const WeightSolver& rig, const Eigen::MatrixX3d& posed, const Eigen::MatrixX3d& mesh);
+  void add(const RigidShare& other);
+  /// In [0, 1]; 0 of nothing.
+  double value() const;
+
+ private:
+  double squares_ = 0.0;
+  double without_motion_ = 0.0;
+};
+
 /// The mesh as it would be without the motion.
 Eigen::MatrixX3d undo(const Similarity& motion, const Eigen::MatrixX3d& mesh);
 

@@ -57,6 +57,13 @@ Eigen::MatrixX3d Similarity::applyToVectors(const Eigen::MatrixX3d& vectors) con
   return scale * vectors * turn.transpose();
 }
 
+Eigen::Matrix3d rotationFrom(const Eigen::Matrix3d& covariance) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Vector3d signs = Eigen::Vector3d::Ones();
+  if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0) signs[2] = -1.0;
+  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+}
+
 Similarity fitSimilarity(const Eigen::MatrixX3d& from, const Eigen::MatrixX3d& to, const Eigen::VectorXd& weights_in,
                          bool fixed_scale) {
   assert(from.rows() == to.rows() && from.rows() >= 1);
@@ -67,13 +74,10 @@ Similarity fitSimilarity(const Eigen::MatrixX3d& from, const Eigen::MatrixX3d& t
   const Eigen::MatrixX3d f = from.rowwise() - from_centre;
   const Eigen::MatrixX3d t = to.rowwise() - to_centre;
   const Eigen::Matrix3d covariance = t.transpose() * weights.asDiagonal() * f;
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Vector3d signs = Eigen::Vector3d::Ones();
-  if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0) signs[2] = -1.0;  // no mirror images
   Similarity found;
-  found.turn = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+  found.turn = rotationFrom(covariance);
   const double spread = (weights.asDiagonal() * f).cwiseProduct(f).sum();
-  if (!fixed_scale && spread > 0.0) found.scale = svd.singularValues().dot(signs) / spread;
+  if (!fixed_scale && spread > 0.0) found.scale = found.turn.cwiseProduct(covariance).sum() / spread;
   found.shift = to_centre - found.scale * from_centre * found.turn.transpose();
   return found;
 }

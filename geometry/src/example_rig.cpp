@@ -147,14 +147,15 @@ class Fit {
     start.examples = problem_.examples;
     double squares = 0.0;
     RigidShare rigid;
+    const HeadStabiliser stabiliser(rig);
     for (Eigen::Index n = 0; n < examples_; ++n) {
       Eigen::MatrixX3d& example = start.examples[static_cast<std::size_t>(n)];
       Eigen::VectorXd w;
       if (options_.head_motion) {
-        StilledMesh stilled = stillHead(rig, example);
-        example = std::move(stilled.mesh);
-        start.motions.push_back(stilled.motion);
-        w = std::move(stilled.weights);
+        StabilisedMesh stabilised = stabiliser.stabilise(example);
+        example = std::move(stabilised.mesh);
+        start.motions.push_back(stabilised.motion);
+        w = std::move(stabilised.weights);
       } else {
         w = rig.solve(rig.project(example), Eigen::VectorXd::Zero(shapes_), 0.0);
       }

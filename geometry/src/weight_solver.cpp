@@ -40,6 +40,16 @@ Eigen::VectorXd WeightSolver::project(const Eigen::MatrixX3d& mesh) const {
   return basis_.transpose() * moved.reshaped();
 }
 
+Eigen::MatrixXd WeightSolver::products(const Eigen::MatrixX3d& points) const {
+  const Eigen::MatrixX3d seen = mask_.asDiagonal() * points;
+  Eigen::MatrixXd found(shapes(), 9);
+  for (Eigen::Index a = 0; a < 3; ++a) {
+    const Eigen::MatrixX3d along = basis_.middleRows(a * vertices(), vertices()).transpose() * seen;
+    for (Eigen::Index b = 0; b < 3; ++b) found.col(a + 3 * b) = along.col(b);
+  }
+  return found;
+}
+
 Eigen::VectorXd WeightSolver::solve(const Eigen::VectorXd& projected, const Eigen::VectorXd& guess,
                                     double strength) const {
   const double pull = shapes() == 0 ? 0.0 : strength * hessian_.trace() / static_cast<double>(shapes());

@@ -39,19 +39,34 @@ TEST(HeadMotion, IsToldFromTheExpression) {
   const Sheet sheet;
   const Eigen::Vector2d weights(0.7, 0.4);
   const Eigen::MatrixX3d posed = sheet.rig.pose(weights);
-  const StilledMesh stilled = stillHead(sheet.rig, someMotion().apply(posed));
-  EXPECT_LT((stilled.weights - weights).cwiseAbs().maxCoeff(), 1e-3);
-  EXPECT_LT((stilled.mesh - posed).rowwise().norm().maxCoeff(), 1e-3);
-  EXPECT_LT((stilled.motion.turn - someMotion().turn).norm(), 1e-3);
-  EXPECT_EQ(stilled.motion.scale, 1.0);
+  const StabilisedMesh stabilised = HeadStabiliser(sheet.rig).stabilise(someMotion().apply(posed));
+  EXPECT_LT((stabilised.weights - weights).cwiseAbs().maxCoeff(), 1e-3);
+  EXPECT_LT((stabilised.mesh - posed).rowwise().norm().maxCoeff(), 1e-3);
+  EXPECT_LT((stabilised.motion.turn - someMotion().turn).norm(), 1e-3);
+  EXPECT_EQ(stabilised.motion.scale, 1.0);
+  EXPECT_LT((stabilised.projected - sheet.rig.project(stabilised.mesh)).norm(), 1e-9 * stabilised.projected.norm());
+}
+
+TEST(HeadMotion, IsThatOfTheVerticesThatCount) {
+  const Sheet sheet;
+  std::vector<int> used;
+  for (int v = 0; v < kSide * (kSide - 2); ++v) used.push_back(v);
+  const WeightSolver rig(sheet.neutral, sheet.shapes, used);
+  const Eigen::Vector2d weights(0.3, 0.9);
+  Eigen::MatrixX3d mesh = someMotion().apply(rig.pose(weights));
+  mesh.bottomRows(2 * kSide).array() += 50.0;
+  const StabilisedMesh stabilised = HeadStabiliser(rig).stabilise(mesh);
+  EXPECT_LT((stabilised.weights - weights).cwiseAbs().maxCoeff(), 1e-3);
+  EXPECT_LT((stabilised.motion.turn - someMotion().turn).norm(), 1e-3);
+  EXPECT_LT((stabilised.projected - rig.project(stabilised.mesh)).norm(), 1e-9 * stabilised.projected.norm());
 }
 
 TEST(HeadMotion, OfAMeshThatDidNotMoveIsNone) {
   const Sheet sheet;
   const Eigen::MatrixX3d posed = sheet.rig.pose(Eigen::Vector2d(0.2, 1.0));
-  const StilledMesh stilled = stillHead(sheet.rig, posed);
-  EXPECT_LT((stilled.motion.turn - Eigen::Matrix3d::Identity()).norm(), 1e-3);
-  EXPECT_LT((stilled.mesh - posed).rowwise().norm().maxCoeff(), 1e-3);
+  const StabilisedMesh stabilised = HeadStabiliser(sheet.rig).stabilise(posed);
+  EXPECT_LT((stabilised.motion.turn - Eigen::Matrix3d::Identity()).norm(), 1e-3);
+  EXPECT_LT((stabilised.mesh - posed).rowwise().norm().maxCoeff(), 1e-3);
 }
 
 TEST(HeadMotion, IsMostOfWhatAPoseMissesWhereTheHeadMoved) {

@@ -69,8 +69,8 @@ class ClipSolver {
   /// A frame by itself.
   Frame solve(const Eigen::MatrixX3d& mesh) const {
     if (options_.head_motion) {
-      const geometry::StilledMesh stilled = geometry::stillHead(solver_, mesh);
-      return {solver_.project(stilled.mesh), stilled.weights, {}};
+      geometry::StabilisedMesh stabilised = stabiliser_.stabilise(mesh);
+      return {std::move(stabilised.projected), std::move(stabilised.weights), {}};
     }
     Frame frame{solver_.project(mesh), {}, {}};
     frame.weights = solver_.solve(frame.projected, Eigen::VectorXd::Zero(solver_.shapes()), 0.0);
@@ -117,6 +117,7 @@ class ClipSolver {
   const Rig& rig_;
   const SolveWeightsOptions& options_;
   geometry::WeightSolver solver_;
+  geometry::HeadStabiliser stabiliser_{solver_};
 };
 
 Eigen::MatrixX3d readFrame(const fs::path& file, const LoadedRig& loaded) {

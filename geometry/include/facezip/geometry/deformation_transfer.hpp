@@ -28,6 +28,10 @@ struct Similarity {
   /// The same without the shift: what becomes of displacements.
   Eigen::MatrixX3d applyToVectors(const Eigen::MatrixX3d& vectors) const;
 };
+/// The rotation R with the largest trace(R^T covariance): of points onto others whose covariance, others by points,
+/// this is (Umeyama 1991). Never a mirror image.
+Eigen::Matrix3d rotationFrom(const Eigen::Matrix3d& covariance);
+
 /// from, to  n by 3, n >= 1;  weights  n, >= 0 and not all 0, or empty for equal ones
 /// fixed_scale  scale stays 1: a rigid motion
 Similarity fitSimilarity(const Eigen::MatrixX3d& from, const Eigen::MatrixX3d& to, const Eigen::VectorXd& weights = {},

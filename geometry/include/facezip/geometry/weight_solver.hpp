@@ -28,10 +28,17 @@ class WeightSolver {
   Eigen::Index shapes() const { return hessian_.rows(); }
   Eigen::Index vertices() const { return neutral_.rows(); }
 
+  const Eigen::MatrixX3d& neutral() const { return neutral_; }
+  /// #V: 1 for vertices that count, else 0.
+  const Eigen::VectorXd& used() const { return mask_; }
+
   /// B^T B of the displacements, M by M, in the square of the unit.
   const Eigen::MatrixXd& hessian() const { return hessian_; }
   /// B^T (mesh - neutral), M.
   Eigen::VectorXd project(const Eigen::MatrixX3d& mesh) const;
+
+  /// Row m: sum over the used vertices of b_m(v) points(v)^T, 3 by 3, column by column. points  #V by 3. M by 9.
+  Eigen::MatrixXd products(const Eigen::MatrixX3d& points) const;
 
   /// minimises  |neutral + B w - mesh|^2 + strength mean_m |b_m|^2 |w - guess|^2  with w in [0, 1].
   /// strength  unitless, >= 0

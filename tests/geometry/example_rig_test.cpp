@@ -116,7 +116,8 @@ TEST(ExampleRig, TakesTheHeadsMotionOut) {
   ExampleRigOptions options;
   options.head_motion = true;
   const ExampleRig rig = fitExampleRig(moved, options);
-  EXPECT_LT(subject.shapeError(rig.shapes), 1.2 * subject.shapeError(still.shapes));
+  // Without following the heads as the shapes change it would be 1.009.
+  EXPECT_LT(subject.shapeError(rig.shapes), 1.005 * subject.shapeError(still.shapes));
   EXPECT_LT((rig.weights - subject.weights).cwiseAbs().mean(),
             1.2 * (still.weights - subject.weights).cwiseAbs().mean());
   EXPECT_LT(rig.convergence.back(), 1.2 * still.convergence.back());

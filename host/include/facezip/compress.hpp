@@ -41,8 +41,8 @@ struct CompressOptions {
   /// package within it. What they cost is estimated while the textures are read the first time.
   std::optional<double> target_rmse;
   std::optional<std::uint64_t> budget_bytes;
-  int further_weight_maps =
-      0;  ///< that each set of weights will have beside those of the expressions: bytes count them
+  /// Weight maps that each set will have beside those of the expressions: a budget counts them too.
+  int further_weight_maps = 0;
   /// A set of weights for every map, instead of one that all share.
   bool weights_per_map = false;
   int weight_scale = 8;  ///< texels of the largest map per weight cell, per axis; 1 to 64

@@ -28,8 +28,8 @@ struct Similarity {
   /// The same without the shift: what becomes of displacements.
   Eigen::MatrixX3d applyToVectors(const Eigen::MatrixX3d& vectors) const;
 };
-/// The rotation R with the largest trace(R^T covariance): of points onto others whose covariance, others by points,
-/// this is (Umeyama 1991). Never a mirror image.
+/// The rotation R that takes centred points x onto centred points y best in the least squares sense (Umeyama 1991).
+/// covariance  sum of y x^T over the points. Never a mirror image.
 Eigen::Matrix3d rotationFrom(const Eigen::Matrix3d& covariance);
 
 /// from, to  n by 3, n >= 1;  weights  n, >= 0 and not all 0, or empty for equal ones

@@ -57,12 +57,11 @@ struct ExampleRig {
   std::vector<double> convergence;            ///< rms over all examples, at the start and after each iteration
   std::vector<Similarity> head_motions;       ///< N, of each example; empty unless they are taken out
   std::vector<Eigen::MatrixX3d> examples;     ///< N, what the rig was fitted to: without these motions
-  double rigid_share =
-      0.0;  ///< of the squared distance that the transferred shapes leave: what a rigid motion explains
-  double shape_prior = 0.0;        ///< beta that was taken
-  double left_out = 0.0;           ///< error of the examples' gradients, each predicted from the others ...
-  double left_out_template = 0.0;  ///< ... and of the transferred shapes alone
-  int degenerate_triangles = 0;    ///< of the neutral; they follow their neighbours
+  double rigid_share = 0.0;                   ///< of the squared distance that the transferred shapes leave: RigidShare
+  double shape_prior = 0.0;                   ///< beta that was taken
+  double left_out = 0.0;                      ///< error of the examples' gradients, each predicted from the others ...
+  double left_out_template = 0.0;             ///< ... and of the transferred shapes alone
+  int degenerate_triangles = 0;               ///< of the neutral; they follow their neighbours
 };
 
 /// Fits the rig. Vertices that a template shape does not move stay put in the subject's too.

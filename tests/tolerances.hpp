@@ -39,6 +39,10 @@ inline constexpr double kSystemRelative = 1e-5;
 // bound by about 1e4 in the tests.
 inline constexpr double kRelaxedWeight = 2e-2;
 
+// Frames of 8 bits, in steps for every unit of scale and of weight: -scale (zero + 32768) is a float32 of up to 1.5 *
+// 2^15, off by 2^-9 at most, and by less where the scale is below 1/2.
+inline constexpr double kFoldedCodeBias = 1.0 / 512.0;
+
 // --- search on Gram matrices -----------------------------------------------------------------------------------------
 
 /// Seam costs, as a share of the largest squared length of a centred fragment of the pair. e^T H e has entries of H

@@ -12,15 +12,26 @@
 //
 // PoCL unrolls no loop by itself: without the pragmas h, w and value live in memory, and a third of the speed is lost.
 //
+// Frames of 8 bits are bound by arithmetic as much as by memory, and most of it would be making floats of codes. So these
+// are stored in quads, of four planes and four texels each, whose bytes two steps of interleaving, with zeros and with
+// 0x4700, turn into floats of the four planes at once: code c becomes the bytes 00 cc 00 47, which are 32768 + c.
+//
+//      quad of texels 0..3       0  1  2  3 of plane p | of plane p + 1 | of plane p + 2 | of plane p + 3
+//      a plane's texels 0..15    bytes 4 j to 4 j + 3 of the four quads of planes p to p + 3, j = plane - p
+//
 // NDRange   global {tiles * 16 / LANES}, rounded up to the local size; a work-item has LANES columns of one tile
-// Buffers   textures  in   [tile][row 8][TILE_ROW_BYTES]: neutral [channel][16] SAMPLE, then from TILE_CODES_OFFSET on
-//                          codes [C][channel][16] CODE, then padding; both aligned for vector loads; tiles row-major
+// Buffers   textures  in   [tile]: neutral [row 8][channel][16] SAMPLE, then codes [row 8] of planes [channel][C]:
+//                          QUAD_PLANES of them as [plane / 4][quad 4][plane % 4][4], the others as [16] CODE. Tiles are
+//                          row-major and whole cache lines, so that 64 bytes of quads are one line
 //           weights   in   [cell / 16][C][16]         float  weight_blend.cl's output
-//           encoding  in   [3][C][channels]           float  scale_ic in steps of a sample, zero_ic, -scale_ic * zero_ic
+//           encoding  in   [3][C][channels]           float  scale_ic in steps of a sample, zero_ic and
+//                                    -scale_ic * (zero_ic + CODE_BIAS where INTERLEAVE makes the plane's floats)
 //           frame     out  [8 * tile rows][16 * tiles_x][channels] FRAME  interleaved
 // Defines   CHANNELS 1..4, DIFFERENCES 1..8, SCALE s >= 1, LANES 16 (CPU) or 1 (GPU),
-//           SAMPLE_TYPE 0 uchar, 1 ushort, 2 float; CODE_BITS 8 or 16; TILE_CODES_OFFSET, TILE_ROW_BYTES
-//           PREFETCH_TILES 0: none; n: textures n tiles ahead are asked for, where the compiler is clang (PoCL)
+//           SAMPLE_TYPE 0 uchar, 1 ushort, 2 float; CODE_BITS 8 or 16
+//           QUAD_PLANES 0 or a multiple of 4
+//           CLANG_BUILTINS 1: the compiler is clang (PoCL), which knows prefetches, and shuffles of 64 bytes
+//           INTERLEAVE 1: floats are made of quads by interleaving; with CLANG_BUILTINS, LANES 16 and QUAD_PLANES alone
 //           VALUES 0: FRAME is SAMPLE; 1: FRAME is float, T in 1/255 of full scale as it is before rounding
 // Rounding  integers: half up, clamped to the type; floats: neither, and I_0 is copied where the sum is 0;
 //           values: neither, exact where the sum is 0 in 8 bits
@@ -43,19 +54,23 @@
 #ifndef VALUES
 #define VALUES 0
 #endif
-#ifndef PREFETCH_TILES
-#define PREFETCH_TILES 0
+#ifndef QUAD_PLANES
+#define QUAD_PLANES 0
+#endif
+#ifndef CLANG_BUILTINS
+#define CLANG_BUILTINS 0
+#endif
+#ifndef INTERLEAVE
+#define INTERLEAVE 0
 #endif
 #ifndef CODE_BITS
 #define CODE_BITS 8
 #endif
-#ifndef TILE_ROW_BYTES  // of 8-bit samples and codes
-#define TILE_CODES_OFFSET (16 * CHANNELS)
-#define TILE_ROW_BYTES (16 * CHANNELS * (1 + DIFFERENCES))
-#endif
 
 #define TILE_WIDTH 16
 #define TILE_ROWS 8
+#define TILES_AHEAD 2  // that are asked for while one is blended
+#define CODE_BIAS 32768.0f
 #define PLANES (DIFFERENCES * CHANNELS)
 // Cells touched by 16 columns and by 8 rows of texels, wherever the tile lies.
 #define CELL_COLUMNS ((TILE_WIDTH - 1) / SCALE + 3)
@@ -75,6 +90,18 @@ typedef VECTOR(float) floats;
 typedef VECTOR(CODE) codes;
 #define TO_FLOATS JOIN(convert_, VECTOR(float))
 
+#if CLANG_BUILTINS
+// 16 texels in one register of 512 bits. OpenCL C ends at 16 lanes; clang does not.
+typedef uchar uchar64 __attribute__((ext_vector_type(64)));
+typedef ushort ushort32 __attribute__((ext_vector_type(32)));
+typedef union {
+  uint16 words;
+  float16 floats;
+  ushort32 halves;
+  uchar64 bytes;
+} texels16;
+#endif
+
 #if SAMPLE_TYPE == 0
 #define SAMPLE uchar
 #define SAMPLE_MAX 255.0f
@@ -88,6 +115,12 @@ typedef VECTOR(CODE) codes;
 #define UNIT_255 255.0f
 #endif
 typedef VECTOR(SAMPLE) samples;
+
+#define NEUTRAL_ROW_BYTES (TILE_WIDTH * CHANNELS * sizeof(SAMPLE))
+#define CODE_ROW_BYTES (TILE_WIDTH * PLANES * sizeof(CODE))
+#define TILE_BYTES (TILE_ROWS * (NEUTRAL_ROW_BYTES + CODE_ROW_BYTES))
+#define LINE_BYTES 64  // what a prefetch brings
+#define TILE_LINES (TILE_BYTES / LINE_BYTES)
 
 #if VALUES
 #define FRAME float
@@ -105,8 +138,8 @@ typedef floats results;
 typedef VECTOR(uint) results;
 #endif
 
-// Frames that are rounded are bound by arithmetic: rounding's half starts the sum, and a difference is one multiply-add,
-// off by 1e-5 of a step at most where it should be 0. The others have to be exact there.
+// Rounding's half starts the sum of a frame that is rounded, and a difference is one multiply-add: off by 1e-5 of a step
+// where it should be 0, by 2^-9 of a step where CODE_BIAS is folded into the encoding. The others have to be exact there.
 #if FRAME_TYPE == 2
 #define START(neutral) ((floats)(0.0f))
 #define DIFFERENCE(code, plane) (((code)-encoding[PLANES + (plane)]) * encoding[plane])
@@ -142,12 +175,22 @@ inline void store(global FRAME* out, const results* value) {
 #elif CHANNELS == 4 && FRAME_TYPE == 0
   *(global uint16*)out = value[0] | value[1] << 8 | value[2] << 16 | value[3] << 24;
 #elif CHANNELS == 3 && FRAME_TYPE == 0
-  // Texels as RGB0 words; then word k of the 12 that leave joins the ends of two neighbours. Four lanes are spare.
-  // Word by word out: PoCL merges the stores. shuffle2 would be three times slower than all the rest.
+  // Texels as RGB0 words, of which 12 leave.
   const uint16 texels = value[0] | value[1] << 8 | value[2] << 16;
+#if CLANG_BUILTINS
+#define RGB_OF_4(t) t, t + 1, t + 2, t + 4, t + 5, t + 6, t + 8, t + 9, t + 10, t + 12, t + 13, t + 14
+  texels16 packed;
+  packed.words = texels;
+  packed.bytes = __builtin_shufflevector(packed.bytes, packed.bytes, RGB_OF_4(0), RGB_OF_4(16), RGB_OF_4(32),
+                                         RGB_OF_4(48), 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3);
+  const uint16 words = packed.words;
+#else
+  // Word k joins the ends of two neighbours. Four lanes are spare. shuffle2 would be three times slower than all the rest.
   const uint16 low = texels.s01245689acde0000 >> (uint16)(0, 8, 16, 0, 8, 16, 0, 8, 16, 0, 8, 16, 0, 0, 0, 0);
   const uint16 high = texels.s1235679abdef0000 << (uint16)(24, 16, 8, 24, 16, 8, 24, 16, 8, 24, 16, 8, 0, 0, 0, 0);
   const uint16 words = low | high;
+#endif
+  // Word by word: PoCL merges the stores.
   global uint* to = (global uint*)out;
   to[0] = words.s0;
   to[1] = words.s1;
@@ -170,6 +213,69 @@ inline void store(global FRAME* out, const results* value) {
     for (int c = 0; c < CHANNELS; ++c) out[x * CHANNELS + c] = lanes[c][x];
   }
 #endif
+}
+
+#if INTERLEAVE
+// Bytes from `from` on of a second register, each behind one of the first.
+#define EIGHT_BYTES(from) \
+  from, 64 + from, from + 1, 65 + from, from + 2, 66 + from, from + 3, 67 + from, \
+  from + 4, 68 + from, from + 5, 69 + from, from + 6, 70 + from, from + 7, 71 + from
+#define FOUR_HALVES(from) from, 32 + from, from + 1, 33 + from, from + 2, 34 + from, from + 3, 35 + from
+
+typedef uint16 __attribute__((aligned(16))) uint16_of_quads;
+
+// 32768 + code of four planes, from the 64 bytes of their quads. The indices are those of unpack instructions, which
+// interleave within 16 bytes.
+inline void widen_quads(global const uchar* quads, floats code[4]) {
+  texels16 all, zeros, magic, low, high, wide;
+  all.words = *(global const uint16_of_quads*)quads;
+  zeros.words = 0;
+  magic.words = 0x47004700;
+  low.bytes = __builtin_shufflevector(zeros.bytes, all.bytes, EIGHT_BYTES(0), EIGHT_BYTES(16), EIGHT_BYTES(32),
+                                      EIGHT_BYTES(48));
+  high.bytes = __builtin_shufflevector(zeros.bytes, all.bytes, EIGHT_BYTES(8), EIGHT_BYTES(24), EIGHT_BYTES(40),
+                                       EIGHT_BYTES(56));
+#define WIDEN(half, from)                                                                                    \
+  wide.halves = __builtin_shufflevector(half.halves, magic.halves, FOUR_HALVES(from), FOUR_HALVES(8 + from), \
+                                        FOUR_HALVES(16 + from), FOUR_HALVES(24 + from))
+  WIDEN(low, 0);
+  code[0] = wide.floats;
+  WIDEN(low, 4);
+  code[1] = wide.floats;
+  WIDEN(high, 0);
+  code[2] = wide.floats;
+  WIDEN(high, 4);
+  code[3] = wide.floats;
+}
+#endif
+
+// Codes of all planes of one texel row, as floats; with CODE_BIAS where that is folded into the encoding.
+inline void load_codes(global const uchar* row, const uint lane, floats code[PLANES]) {
+#pragma unroll
+  for (int plane = 0; plane < QUAD_PLANES; plane += 4) {
+    global const uchar* quads = row + 16 * plane;
+#if INTERLEAVE
+    widen_quads(quads, code + plane);
+#if VALUES
+#pragma unroll
+    for (int j = 0; j < 4; ++j) code[plane + j] -= CODE_BIAS;
+#endif
+#else
+#pragma unroll
+    for (int j = 0; j < 4; ++j) {
+#if LANES == 1
+      code[plane + j] = (float)quads[lane / 4 * 16 + 4 * j + lane % 4];
+#else
+      code[plane + j] = convert_float16((uchar16)(vload4(j, quads), vload4(4 + j, quads), vload4(8 + j, quads),
+                                                  vload4(12 + j, quads)));
+#endif
+    }
+#endif
+  }
+#pragma unroll
+  for (int plane = QUAD_PLANES; plane < PLANES; ++plane) {
+    code[plane] = TO_FLOATS(*(global const codes*)((global const CODE*)row + (16 * plane + lane)));
+  }
 }
 
 // Rounds down for negative numerators too.
@@ -230,7 +336,7 @@ kernel void blend(global const uchar* restrict textures, global const float* res
   floats h[CELL_ROWS][DIFFERENCES];
   interpolate_columns(weights, tile_x * TILE_WIDTH, lane, first_cell_row, cell_columns, cell_rows, h);
 
-  global const uchar* texels = textures + tile * (TILE_ROWS * TILE_ROW_BYTES);
+  global const uchar* texels = textures + tile * TILE_BYTES;
   global FRAME* out = frame + ((ulong)tile_y * TILE_ROWS * tiles_x + tile_x) * (TILE_WIDTH * CHANNELS) + lane * CHANNELS;
 #pragma unroll
   for (int row = 0; row < TILE_ROWS; ++row) {
@@ -241,29 +347,32 @@ kernel void blend(global const uchar* restrict textures, global const float* res
 #pragma unroll
     for (int i = 0; i < DIFFERENCES; ++i) w[i] = fma(h[above + 1][i] - h[above][i], fraction, h[above][i]);
 
-#if PREFETCH_TILES
+#if CLANG_BUILTINS
     // Arithmetic keeps a core from running ahead into the next tiles by itself: a fifth of the time was waiting.
 #pragma unroll
-    for (int byte = 0; byte < TILE_ROW_BYTES; byte += 64) {
-      __builtin_prefetch((const void*)(size_t)(texels + PREFETCH_TILES * TILE_ROWS * TILE_ROW_BYTES + byte));
+    for (int line = row; line < (int)TILE_LINES; line += TILE_ROWS) {
+      __builtin_prefetch((const void*)(size_t)(texels + TILES_AHEAD * TILE_BYTES + line * LINE_BYTES));
+    }
+#pragma unroll
+    for (int sample = 0; sample < TILE_WIDTH * CHANNELS; sample += LINE_BYTES / sizeof(FRAME)) {
+      __builtin_prefetch((const void*)(size_t)(out + TILES_AHEAD * TILE_WIDTH * CHANNELS + sample), /* for writing */ 1);
     }
 #endif
-    global const CODE* difference = (global const CODE*)(texels + TILE_CODES_OFFSET) + lane;
+    floats code[PLANES];
+    load_codes(texels + TILE_ROWS * NEUTRAL_ROW_BYTES + row * CODE_ROW_BYTES, lane, code);
+    global const SAMPLE* neutrals = (global const SAMPLE*)(texels + row * NEUTRAL_ROW_BYTES) + lane;
     results value[CHANNELS];
 #pragma unroll
     for (int c = 0; c < CHANNELS; ++c) {
-      const floats neutral = TO_FLOATS(*(global const samples*)((global const SAMPLE*)texels + (16 * c + lane)));
+      const floats neutral = TO_FLOATS(*(global const samples*)(neutrals + 16 * c));
       floats sum = START(neutral);
 #pragma unroll
       for (int i = 0; i < DIFFERENCES; ++i) {
-        const int plane = i * CHANNELS + c;
-        const floats code = TO_FLOATS(*(global const codes*)(difference + 16 * plane));
-        sum = fma(DIFFERENCE(code, plane), w[i], sum);
+        sum = fma(DIFFERENCE(code[c * DIFFERENCES + i], i * CHANNELS + c), w[i], sum);
       }
       value[c] = finish(neutral, sum);
     }
     store(out, value);
-    texels += TILE_ROW_BYTES;
     out += (ulong)tiles_x * (TILE_WIDTH * CHANNELS);
   }
 }

@@ -13,50 +13,69 @@ namespace {
 
 std::size_t size(int value) { return static_cast<std::size_t>(value); }
 
-/// Splits one interleaved row of texels into planes of 16: to[tile * tile_stride + (channel * 16 + x)].
+/// Where 16 texels of one plane lie in a tile's row: in samples or codes from `begin`, texel x of quad x / 4.
+struct Plane {
+  std::size_t begin;
+  std::size_t quad_stride;  // 4: one texel behind the other
+};
+
+Plane neutralPlane(int channel) { return {size(channel) * kTileWidth, 4}; }
+
+/// As kernels/cl/blend.cl describes it.
+Plane codePlane(const TextureShape& shape, int channel, int difference) {
+  const std::size_t plane = size(channel) * size(shape.differences) + size(difference);
+  if (plane >= size(shape.quadPlanes())) return {plane * kTileWidth, 4};
+  return {plane / 4 * 4 * kTileWidth + plane % 4 * 4, 16};
+}
+
+/// Takes one channel out of an interleaved row of texels and puts it into its plane in each tile.
 /// Texels beyond the width keep what was there; the frame's padding is never read.
 template <typename Sample>
-void splitRow(const std::byte* row, int width, int channels, std::size_t tile_stride, std::byte* to) {
-  for (int x0 = 0; x0 < width; x0 += kTileWidth) {
-    const int count = std::min(kTileWidth, width - x0);
-    for (int c = 0; c < channels; ++c) {
-      const std::byte* from = row + (size(x0) * size(channels) + size(c)) * sizeof(Sample);
-      std::byte* plane = to + size(c) * kTileWidth * sizeof(Sample);
-      for (int x = 0; x < count; ++x) {
-        std::memcpy(plane + size(x) * sizeof(Sample), from + size(x) * size(channels) * sizeof(Sample), sizeof(Sample));
-      }
-    }
-    to += tile_stride;
+void splitRow(const std::byte* row, const TextureShape& shape, int channel, Plane plane, std::byte* to) {
+  for (int x = 0; x < shape.width; ++x) {
+    const std::size_t in_tile = size(x % kTileWidth);
+    const std::size_t in_plane = plane.begin + in_tile / 4 * plane.quad_stride + in_tile % 4;
+    std::memcpy(to + size(x / kTileWidth) * shape.tileBytes() + in_plane * sizeof(Sample),
+                row + (size(x) * size(shape.channels) + size(channel)) * sizeof(Sample), sizeof(Sample));
   }
 }
 
 /// splitRow for samples or codes of `bytes` bytes.
-void splitRowOf(std::size_t bytes, const TextureShape& shape, const std::byte* row, std::size_t tile_stride,
+void splitRowOf(std::size_t bytes, const TextureShape& shape, const std::byte* row, int channel, Plane plane,
                 std::byte* to) {
   switch (bytes) {
     case 1:
-      return splitRow<std::uint8_t>(row, shape.width, shape.channels, tile_stride, to);
+      return splitRow<std::uint8_t>(row, shape, channel, plane, to);
     case 2:
-      return splitRow<std::uint16_t>(row, shape.width, shape.channels, tile_stride, to);
+      return splitRow<std::uint16_t>(row, shape, channel, plane, to);
     default:
-      return splitRow<float>(row, shape.width, shape.channels, tile_stride, to);
+      return splitRow<float>(row, shape, channel, plane, to);
   }
 }
 
-std::vector<float> encodingOf(const TextureShape& shape) {
+/// The kernel's `encoding`. interleaves  whether it makes floats of quads by interleaving
+std::vector<float> encodingOf(const TextureShape& shape, bool interleaves) {
+  constexpr double kCodeBias = 32768.0;
   std::vector<float> encoding = shape.scale;
   encoding.insert(encoding.end(), shape.zero.begin(), shape.zero.end());
-  for (std::size_t i = 0; i < shape.scale.size(); ++i) encoding.push_back(-shape.scale[i] * shape.zero[i]);
+  for (int i = 0; i < shape.differences; ++i) {
+    for (int c = 0; c < shape.channels; ++c) {
+      const std::size_t plane = size(i * shape.channels + c);
+      const bool biased = interleaves && c * shape.differences + i < shape.quadPlanes();
+      encoding.push_back(
+          static_cast<float>(-double{shape.scale[plane]} * (double{shape.zero[plane]} + (biased ? kCodeBias : 0.0))));
+    }
+  }
   return encoding;
 }
 
-std::string definesOf(const TextureShape& shape, const DeviceInfo& device, bool gpu, FrameForm form) {
+std::string definesOf(const TextureShape& shape, bool gpu, bool clang_builtins, bool interleaves, FrameForm form) {
   return fmt::format(
-      "-D LANES={} -D CHANNELS={} -D DIFFERENCES={} -D SCALE={} -D SAMPLE_TYPE={} -D CODE_BITS={} "
-      "-D TILE_CODES_OFFSET={} -D TILE_ROW_BYTES={} -D VALUES={} -D PREFETCH_TILES={}",
+      "-D LANES={} -D CHANNELS={} -D DIFFERENCES={} -D SCALE={} -D SAMPLE_TYPE={} -D CODE_BITS={} -D QUAD_PLANES={} "
+      "-D VALUES={} -D CLANG_BUILTINS={} -D INTERLEAVE={}",
       gpu ? 1 : kTileWidth, shape.channels, shape.differences, shape.weight_scale, static_cast<int>(shape.sample_type),
-      shape.difference_bits, shape.tileCodesOffset(), shape.tileRowBytes(), form == FrameForm::kValues ? 1 : 0,
-      prefetches(device, gpu) ? 2 : 0);
+      shape.difference_bits, shape.quadPlanes(), form == FrameForm::kValues ? 1 : 0, clang_builtins ? 1 : 0,
+      interleaves ? 1 : 0);
 }
 
 int floorDivide(int numerator, int denominator) {
@@ -65,14 +84,17 @@ int floorDivide(int numerator, int denominator) {
 
 }  // namespace
 
-std::size_t TextureShape::tileCodesOffset() const {
-  return device::roundUp(size(channels) * image::sampleBytes(sample_type) * kTileWidth, codeBytes() * kTileWidth);
+std::size_t TextureShape::neutralTileRowBytes() const {
+  return size(channels) * image::sampleBytes(sample_type) * kTileWidth;
 }
 
-std::size_t TextureShape::tileRowBytes() const {
-  const std::size_t codes = size(channels) * size(differences) * codeBytes() * kTileWidth;
-  return device::roundUp(tileCodesOffset() + codes,
-                         std::max(image::sampleBytes(sample_type), codeBytes()) * kTileWidth);
+std::size_t TextureShape::codeTileRowBytes() const {
+  return size(channels) * size(differences) * codeBytes() * kTileWidth;
+}
+
+int TextureShape::quadPlanes() const {
+  const bool narrow = sample_type == image::SampleType::kUint8 && difference_bits == 8;
+  return narrow ? channels * differences / 4 * 4 : 0;
 }
 
 TextureRows::TextureRows(device::DeviceContext& context, TextureShape shape, int most_rows, int cell_columns,
@@ -85,15 +107,16 @@ TextureRows::TextureRows(device::DeviceContext& context, TextureShape shape, int
   assert(shape_.scale.size() == size(shape_.differences) * size(shape_.channels));
   assert(shape_.zero.size() == shape_.scale.size());
   gpu_ = context.resolve(variant) == device::KernelVariant::kGpu;
+  clang_builtins_ = context.clangBuiltins(variant);
   textures_ = context.allocate(most_rows_ / kTileRows * shape_.tilesBytes(), CL_MEM_READ_ONLY, "the textures of a map");
-  encoding_ = context.upload(encodingOf(shape_), "the encoding of difference textures");
+  encoding_ = context.upload(encodingOf(shape_, interleaves()), "the encoding of difference textures");
   output(FrameForm::kSamples);
 }
 
 TextureRows::Output& TextureRows::output(FrameForm form) {
   Output& output = outputs_[static_cast<std::size_t>(form)];
   if (output.kernel() == nullptr) {
-    output.kernel = context_.kernel("blend.cl", "blend", definesOf(shape_, context_.info(), gpu_, form));
+    output.kernel = context_.kernel("blend.cl", "blend", definesOf(shape_, gpu_, clang_builtins_, interleaves(), form));
     output.local_size = context_.workGroupSize(output.kernel, gpu_ ? 64 : 16);
     output.kernel.setArg(0, textures_);
     output.kernel.setArg(2, encoding_);
@@ -112,19 +135,21 @@ void TextureRows::load(int first, int rows, std::span<const std::byte> neutral,
   assert(first % kTileRows == 0 && begin_ <= first && first + rows <= end_);
   assert(neutral.size() == size(rows) * shape_.rowBytes() && differences.size() == size(shape_.differences));
   const int tile_rows = (rows + kTileRows - 1) / kTileRows;
-  const std::size_t tile_bytes = kTileRows * shape_.tileRowBytes();
+  const std::size_t sample_bytes = image::sampleBytes(shape_.sample_type);
   const std::size_t code_bytes = shape_.codeBytes();
-  const std::size_t texture_bytes = size(shape_.channels) * kTileWidth * code_bytes;  // of one texture in a tile row
   tiles_.resize(size(tile_rows) * shape_.tilesBytes());
   tbb::parallel_for(0, rows, [&](int row) {
-    std::byte* to =
-        tiles_.data() + size(row / kTileRows) * shape_.tilesBytes() + size(row % kTileRows) * shape_.tileRowBytes();
-    splitRowOf(image::sampleBytes(shape_.sample_type), shape_, neutral.data() + size(row) * shape_.rowBytes(),
-               tile_bytes, to);
-    to += shape_.tileCodesOffset();
-    for (int i = 0; i < shape_.differences; ++i) {
-      splitRowOf(code_bytes, shape_, differences[size(i)].data() + size(row) * shape_.differenceRowBytes(), tile_bytes,
-                 to + size(i) * texture_bytes);
+    std::byte* tiles = tiles_.data() + size(row / kTileRows) * shape_.tilesBytes();
+    std::byte* samples = tiles + size(row % kTileRows) * shape_.neutralTileRowBytes();
+    std::byte* codes =
+        tiles + kTileRows * shape_.neutralTileRowBytes() + size(row % kTileRows) * shape_.codeTileRowBytes();
+    const std::byte* neutral_row = neutral.data() + size(row) * shape_.rowBytes();
+    for (int c = 0; c < shape_.channels; ++c) {
+      splitRowOf(sample_bytes, shape_, neutral_row, c, neutralPlane(c), samples);
+      for (int i = 0; i < shape_.differences; ++i) {
+        const std::byte* code_row = differences[size(i)].data() + size(row) * shape_.differenceRowBytes();
+        splitRowOf(code_bytes, shape_, code_row, c, codePlane(shape_, c, i), codes);
+      }
     }
   });
   context_.write(textures_, tiles_.data(), tiles_.size(), "the textures of a map",

@@ -35,13 +35,15 @@ struct TextureShape {
   std::size_t differenceRowBytes() const {
     return static_cast<std::size_t>(width) * static_cast<std::size_t>(channels) * codeBytes();
   }
-  /// One texel row of one tile: 16 texels of the neutral and of all differences, padded so that both are aligned for
-  /// vector loads in every row.
-  std::size_t tileRowBytes() const;
-  /// Where the codes begin in it.
-  std::size_t tileCodesOffset() const;
+  /// One texel row of one tile: 16 texels of the neutral, and of all differences. A tile has the rows of the one, then
+  /// those of the other.
+  std::size_t neutralTileRowBytes() const;
+  std::size_t codeTileRowBytes() const;
+  std::size_t tileBytes() const { return kTileRows * (neutralTileRowBytes() + codeTileRowBytes()); }
+  /// Planes of codes, of a channel and a difference each, that are stored in quads: those of 8-bit maps, by fours.
+  int quadPlanes() const;
   /// A row of tiles.
-  std::size_t tilesBytes() const { return static_cast<std::size_t>(tilesAcross()) * kTileRows * tileRowBytes(); }
+  std::size_t tilesBytes() const { return static_cast<std::size_t>(tilesAcross()) * tileBytes(); }
   image::ImageShape frameShape(int rows) const { return {width, rows, channels, sample_type}; }
 };
 
@@ -91,6 +93,8 @@ class TextureRows {
   int tileRowCount() const { return (end_ - begin_ + kTileRows - 1) / kTileRows; }
   std::size_t frameSampleBytes(FrameForm form) const;
   Output& output(FrameForm form);
+  /// Whether the kernel makes floats of quads by interleaving.
+  bool interleaves() const { return clang_builtins_ && shape_.quadPlanes() > 0; }
   bool fitsFrame(std::span<const std::byte> out, FrameForm form) const;
   void blendInto(const cl::Buffer& weights, std::span<std::byte> out, FrameForm form);
 
@@ -101,6 +105,7 @@ class TextureRows {
   int begin_ = 0;
   int end_ = 0;
   bool gpu_;
+  bool clang_builtins_;
   Output outputs_[2];  // by FrameForm; the second is made when values are first asked for
   cl::Buffer textures_;
   cl::Buffer encoding_;

@@ -18,7 +18,7 @@ WeightMaps::WeightMaps(device::DeviceContext& context, WeightGrid grid, std::spa
   items_per_block_ = gpu ? 16 : 1;
   kernel_ = context.kernel("weight_blend.cl", "weight_blend",
                            fmt::format("-D LANES={} -D DIFFERENCES={} -D PREFETCH={}", gpu ? 1 : 16, grid_.channels(),
-                                       prefetches(context.info(), gpu) ? 1 : 0));
+                                       context.clangBuiltins(variant) ? 1 : 0));
   local_size_ = context.workGroupSize(kernel_, gpu ? 64 : 16);
   const std::size_t expressions = static_cast<std::size_t>(grid_.expressions);
   const std::size_t channels = static_cast<std::size_t>(grid_.channels());
@@ -79,8 +79,6 @@ cl::Event WeightMaps::blend(std::span<const float> beta, int begin_row, int end_
   const std::size_t items = (end_block - first_block) * items_per_block_;
   return context_.run(kernel_, cl::NDRange(device::roundUp(items, local_size_)), cl::NDRange(local_size_));
 }
-
-bool prefetches(const DeviceInfo& device, bool gpu) { return !gpu && device.platform == "Portable Computing Language"; }
 
 void requireWeights(std::span<const float> beta, std::span<const std::string> names) {
   if (beta.size() != names.size()) {

@@ -73,9 +73,6 @@ class WeightMaps {
   std::vector<float> decoding_;  // scale_i, then offset_i times the sum of beta
 };
 
-/// Whether kernels ask for memory ahead: PoCL's compiler knows how and its processors gain by it; GPUs have no need.
-bool prefetches(const DeviceInfo& device, bool gpu);
-
 /// Throws InputError that names the expression (by index, or by `names` when given) whose weight is not finite, or
 /// says how many weights were expected.
 void requireWeights(std::span<const float> beta, std::span<const std::string> names);

@@ -111,6 +111,10 @@ KernelVariant DeviceContext::resolve(KernelVariant variant) const {
   return info_.type == DeviceInfo::Type::kGpu ? KernelVariant::kGpu : KernelVariant::kCpu;
 }
 
+bool DeviceContext::clangBuiltins(KernelVariant variant) const {
+  return resolve(variant) == KernelVariant::kCpu && info_.platform == "Portable Computing Language";
+}
+
 std::size_t DeviceContext::workGroupSize(const cl::Kernel& kernel, std::size_t wanted) const {
   const std::size_t allowed =
       std::min(info_.largest_work_group, kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device_));

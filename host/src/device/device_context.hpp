@@ -57,6 +57,10 @@ class DeviceContext {
   /// vectors for minutes.
   KernelVariant resolve(KernelVariant variant) const;
 
+  /// Whether the kernels of a variant may ask for memory ahead and shuffle 64 bytes at once, beyond OpenCL C: PoCL's
+  /// compiler is clang, and its processors gain by both; GPUs have no need.
+  bool clangBuiltins(KernelVariant variant) const;
+
   /// Largest power-of-two work-group size that the device and `kernel` allow, at most `wanted`.
   std::size_t workGroupSize(const cl::Kernel& kernel, std::size_t wanted) const;
 

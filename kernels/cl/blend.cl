@@ -12,9 +12,9 @@
 //
 // PoCL unrolls no loop by itself: without the pragmas h, w and value live in memory, and a third of the speed is lost.
 //
-// Frames of 8 bits are bound by arithmetic as much as by memory, and most of it would be making floats of codes. So these
-// are stored in quads, of four planes and four texels each, whose bytes two steps of interleaving, with zeros and with
-// 0x4700, turn into floats of the four planes at once: code c becomes the bytes 00 cc 00 47, which are 32768 + c.
+// On PoCL, frames of 8 bits are bound by arithmetic as much as by memory, and most of it would be making floats of codes.
+// So there these are stored in quads, of four planes and four texels each, whose bytes two steps of interleaving, with
+// zeros and with 0x4700, turn into floats of four planes: code c becomes the bytes 00 cc 00 47, which are 32768 + c.
 //
 //      quad of texels 0..3       0  1  2  3 of plane p | of plane p + 1 | of plane p + 2 | of plane p + 3
 //      a plane's texels 0..15    bytes 4 j to 4 j + 3 of the four quads of planes p to p + 3, j = plane - p
@@ -25,13 +25,12 @@
 //                          row-major and whole cache lines, so that 64 bytes of quads are one line
 //           weights   in   [cell / 16][C][16]         float  weight_blend.cl's output
 //           encoding  in   [3][C][channels]           float  scale_ic in steps of a sample, zero_ic and
-//                                    -scale_ic * (zero_ic + CODE_BIAS where INTERLEAVE makes the plane's floats)
+//                                    -scale_ic * (zero_ic + CODE_BIAS for planes in quads)
 //           frame     out  [8 * tile rows][16 * tiles_x][channels] FRAME  interleaved
 // Defines   CHANNELS 1..4, DIFFERENCES 1..8, SCALE s >= 1, LANES 16 (CPU) or 1 (GPU),
 //           SAMPLE_TYPE 0 uchar, 1 ushort, 2 float; CODE_BITS 8 or 16
-//           QUAD_PLANES 0 or a multiple of 4
 //           CLANG_BUILTINS 1: the compiler is clang (PoCL), which knows prefetches, and shuffles of 64 bytes
-//           INTERLEAVE 1: floats are made of quads by interleaving; with CLANG_BUILTINS, LANES 16 and QUAD_PLANES alone
+//           QUAD_PLANES 0, or with CLANG_BUILTINS, LANES 16, 8-bit samples and codes a multiple of 4
 //           VALUES 0: FRAME is SAMPLE; 1: FRAME is float, T in 1/255 of full scale as it is before rounding
 // Rounding  integers: half up, clamped to the type; floats: neither, and I_0 is copied where the sum is 0;
 //           values: neither, exact where the sum is 0 in 8 bits
@@ -59,9 +58,6 @@
 #endif
 #ifndef CLANG_BUILTINS
 #define CLANG_BUILTINS 0
-#endif
-#ifndef INTERLEAVE
-#define INTERLEAVE 0
 #endif
 #ifndef CODE_BITS
 #define CODE_BITS 8
@@ -215,7 +211,7 @@ inline void store(global FRAME* out, const results* value) {
 #endif
 }
 
-#if INTERLEAVE
+#if QUAD_PLANES > 0
 // Bytes from `from` on of a second register, each behind one of the first.
 #define EIGHT_BYTES(from) \
   from, 64 + from, from + 1, 65 + from, from + 2, 66 + from, from + 3, 67 + from, \
@@ -249,29 +245,16 @@ inline void widen_quads(global const uchar* quads, floats code[4]) {
 }
 #endif
 
-// Codes of all planes of one texel row, as floats; with CODE_BIAS where that is folded into the encoding.
+// Codes of all planes of one texel row, as floats; those of quads with CODE_BIAS, where that is folded into the encoding.
 inline void load_codes(global const uchar* row, const uint lane, floats code[PLANES]) {
+#if QUAD_PLANES > 0
 #pragma unroll
-  for (int plane = 0; plane < QUAD_PLANES; plane += 4) {
-    global const uchar* quads = row + 16 * plane;
-#if INTERLEAVE
-    widen_quads(quads, code + plane);
+  for (int plane = 0; plane < QUAD_PLANES; plane += 4) widen_quads(row + 16 * plane, code + plane);
 #if VALUES
 #pragma unroll
-    for (int j = 0; j < 4; ++j) code[plane + j] -= CODE_BIAS;
+  for (int plane = 0; plane < QUAD_PLANES; ++plane) code[plane] -= CODE_BIAS;
 #endif
-#else
-#pragma unroll
-    for (int j = 0; j < 4; ++j) {
-#if LANES == 1
-      code[plane + j] = (float)quads[lane / 4 * 16 + 4 * j + lane % 4];
-#else
-      code[plane + j] = convert_float16((uchar16)(vload4(j, quads), vload4(4 + j, quads), vload4(8 + j, quads),
-                                                  vload4(12 + j, quads)));
 #endif
-    }
-#endif
-  }
 #pragma unroll
   for (int plane = QUAD_PLANES; plane < PLANES; ++plane) {
     code[plane] = TO_FLOATS(*(global const codes*)((global const CODE*)row + (16 * plane + lane)));
@@ -355,7 +338,8 @@ kernel void blend(global const uchar* restrict textures, global const float* res
     }
 #pragma unroll
     for (int sample = 0; sample < TILE_WIDTH * CHANNELS; sample += LINE_BYTES / sizeof(FRAME)) {
-      __builtin_prefetch((const void*)(size_t)(out + TILES_AHEAD * TILE_WIDTH * CHANNELS + sample), /* for writing */ 1);
+      global FRAME* ahead = out + TILES_AHEAD * TILE_WIDTH * CHANNELS + sample;
+      __builtin_prefetch((const void*)(size_t)ahead, /* for writing */ 1);
     }
 #endif
     floats code[PLANES];

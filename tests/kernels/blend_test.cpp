@@ -145,7 +145,7 @@ struct Scene {
 
   /// What the bias of codes, where frames have it folded, may add to their error: weights are 1 at most.
   double biasSlack(KernelVariant variant) const {
-    if (!context.clangBuiltins(variant) || shape().quadPlanes() == 0) return 0.0;
+    if (!context.clangBuiltins(variant) || size.type != SampleType::kUint8 || size.difference_bits != 8) return 0.0;
     double most = 0.0;
     for (std::size_t c = 0; c < static_cast<std::size_t>(size.channels); ++c) {
       double sum = 0.0;

@@ -22,9 +22,9 @@ struct Plane {
 Plane neutralPlane(int channel) { return {size(channel) * kTileWidth, 4}; }
 
 /// As kernels/cl/blend.cl describes it.
-Plane codePlane(const TextureShape& shape, int channel, int difference) {
+Plane codePlane(const TextureShape& shape, int quad_planes, int channel, int difference) {
   const std::size_t plane = size(channel) * size(shape.differences) + size(difference);
-  if (plane >= size(shape.quadPlanes())) return {plane * kTileWidth, 4};
+  if (plane >= size(quad_planes)) return {plane * kTileWidth, 4};
   return {plane / 4 * 4 * kTileWidth + plane % 4 * 4, 16};
 }
 
@@ -53,15 +53,14 @@ void splitRowOf(std::size_t bytes, const TextureShape& shape, const std::byte* r
   }
 }
 
-/// The kernel's `encoding`. interleaves  whether it makes floats of quads by interleaving
-std::vector<float> encodingOf(const TextureShape& shape, bool interleaves) {
+std::vector<float> encodingOf(const TextureShape& shape, int quad_planes) {
   constexpr double kCodeBias = 32768.0;
   std::vector<float> encoding = shape.scale;
   encoding.insert(encoding.end(), shape.zero.begin(), shape.zero.end());
   for (int i = 0; i < shape.differences; ++i) {
     for (int c = 0; c < shape.channels; ++c) {
       const std::size_t plane = size(i * shape.channels + c);
-      const bool biased = interleaves && c * shape.differences + i < shape.quadPlanes();
+      const bool biased = c * shape.differences + i < quad_planes;
       encoding.push_back(
           static_cast<float>(-double{shape.scale[plane]} * (double{shape.zero[plane]} + (biased ? kCodeBias : 0.0))));
     }
@@ -69,13 +68,12 @@ std::vector<float> encodingOf(const TextureShape& shape, bool interleaves) {
   return encoding;
 }
 
-std::string definesOf(const TextureShape& shape, bool gpu, bool clang_builtins, bool interleaves, FrameForm form) {
+std::string definesOf(const TextureShape& shape, int quad_planes, bool gpu, bool clang_builtins, FrameForm form) {
   return fmt::format(
       "-D LANES={} -D CHANNELS={} -D DIFFERENCES={} -D SCALE={} -D SAMPLE_TYPE={} -D CODE_BITS={} -D QUAD_PLANES={} "
-      "-D VALUES={} -D CLANG_BUILTINS={} -D INTERLEAVE={}",
+      "-D VALUES={} -D CLANG_BUILTINS={}",
       gpu ? 1 : kTileWidth, shape.channels, shape.differences, shape.weight_scale, static_cast<int>(shape.sample_type),
-      shape.difference_bits, shape.quadPlanes(), form == FrameForm::kValues ? 1 : 0, clang_builtins ? 1 : 0,
-      interleaves ? 1 : 0);
+      shape.difference_bits, quad_planes, form == FrameForm::kValues ? 1 : 0, clang_builtins ? 1 : 0);
 }
 
 int floorDivide(int numerator, int denominator) {
@@ -92,11 +90,6 @@ std::size_t TextureShape::codeTileRowBytes() const {
   return size(channels) * size(differences) * codeBytes() * kTileWidth;
 }
 
-int TextureShape::quadPlanes() const {
-  const bool narrow = sample_type == image::SampleType::kUint8 && difference_bits == 8;
-  return narrow ? channels * differences / 4 * 4 : 0;
-}
-
 TextureRows::TextureRows(device::DeviceContext& context, TextureShape shape, int most_rows, int cell_columns,
                          int cell_rows, device::KernelVariant variant)
     : context_(context),
@@ -109,14 +102,19 @@ TextureRows::TextureRows(device::DeviceContext& context, TextureShape shape, int
   gpu_ = context.resolve(variant) == device::KernelVariant::kGpu;
   clang_builtins_ = context.clangBuiltins(variant);
   textures_ = context.allocate(most_rows_ / kTileRows * shape_.tilesBytes(), CL_MEM_READ_ONLY, "the textures of a map");
-  encoding_ = context.upload(encodingOf(shape_, interleaves()), "the encoding of difference textures");
+  encoding_ = context.upload(encodingOf(shape_, quadPlanes()), "the encoding of difference textures");
   output(FrameForm::kSamples);
+}
+
+int TextureRows::quadPlanes() const {
+  const bool narrow = shape_.sample_type == image::SampleType::kUint8 && shape_.difference_bits == 8;
+  return clang_builtins_ && narrow ? shape_.channels * shape_.differences / 4 * 4 : 0;
 }
 
 TextureRows::Output& TextureRows::output(FrameForm form) {
   Output& output = outputs_[static_cast<std::size_t>(form)];
   if (output.kernel() == nullptr) {
-    output.kernel = context_.kernel("blend.cl", "blend", definesOf(shape_, gpu_, clang_builtins_, interleaves(), form));
+    output.kernel = context_.kernel("blend.cl", "blend", definesOf(shape_, quadPlanes(), gpu_, clang_builtins_, form));
     output.local_size = context_.workGroupSize(output.kernel, gpu_ ? 64 : 16);
     output.kernel.setArg(0, textures_);
     output.kernel.setArg(2, encoding_);
@@ -148,7 +146,7 @@ void TextureRows::load(int first, int rows, std::span<const std::byte> neutral,
       splitRowOf(sample_bytes, shape_, neutral_row, c, neutralPlane(c), samples);
       for (int i = 0; i < shape_.differences; ++i) {
         const std::byte* code_row = differences[size(i)].data() + size(row) * shape_.differenceRowBytes();
-        splitRowOf(code_bytes, shape_, code_row, c, codePlane(shape_, c, i), codes);
+        splitRowOf(code_bytes, shape_, code_row, c, codePlane(shape_, quadPlanes(), c, i), codes);
       }
     }
   });

@@ -40,8 +40,6 @@ struct TextureShape {
   std::size_t neutralTileRowBytes() const;
   std::size_t codeTileRowBytes() const;
   std::size_t tileBytes() const { return kTileRows * (neutralTileRowBytes() + codeTileRowBytes()); }
-  /// Planes of codes, of a channel and a difference each, that are stored in quads: those of 8-bit maps, by fours.
-  int quadPlanes() const;
   /// A row of tiles.
   std::size_t tilesBytes() const { return static_cast<std::size_t>(tilesAcross()) * tileBytes(); }
   image::ImageShape frameShape(int rows) const { return {width, rows, channels, sample_type}; }
@@ -93,8 +91,8 @@ class TextureRows {
   int tileRowCount() const { return (end_ - begin_ + kTileRows - 1) / kTileRows; }
   std::size_t frameSampleBytes(FrameForm form) const;
   Output& output(FrameForm form);
-  /// Whether the kernel makes floats of quads by interleaving.
-  bool interleaves() const { return clang_builtins_ && shape_.quadPlanes() > 0; }
+  /// Planes of codes, of a channel and a difference each, that are stored in quads (kernels/cl/blend.cl).
+  int quadPlanes() const;
   bool fitsFrame(std::span<const std::byte> out, FrameForm form) const;
   void blendInto(const cl::Buffer& weights, std::span<std::byte> out, FrameForm form);
 

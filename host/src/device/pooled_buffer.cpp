@@ -29,10 +29,12 @@ MappedBytes::~MappedBytes() {
 
 const cl::Buffer& PooledBuffer::reserve(std::size_t bytes) {
   if (bytes > bytes_ || buffer_() == nullptr) {
+    const std::size_t room =
+        std::clamp(bytes_ + bytes_ / 2, bytes, std::max(bytes, context_.info().largest_allocation_bytes));
     buffer_ = cl::Buffer();  // first, so that the old and the new one need not both fit
     bytes_ = 0;
-    buffer_ = context_.allocate(bytes, flags_, what_);
-    bytes_ = bytes;
+    buffer_ = context_.allocate(room, flags_, what_);
+    bytes_ = room;
   }
   return buffer_;
 }

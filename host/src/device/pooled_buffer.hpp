@@ -31,7 +31,8 @@ class MappedBytes {
   std::span<std::byte> bytes_;
 };
 
-/// A buffer that only grows. Its contents are lost when it does.
+/// A buffer that only grows, by half at least: bands often grow a little from one to the next, and memory that is not
+/// touched costs nothing on PoCL. Its contents are lost when it does.
 class PooledBuffer {
  public:
   /// what  names the buffer in errors

@@ -1,8 +1,9 @@
 #include "compress/package_output.hpp"
 
-#include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
 
 #include <span>
+#include <utility>
 
 #include "compress/codes/texture_encoder.hpp"
 #include "facezip/package.hpp"
@@ -56,27 +57,38 @@ PackageDescription describe(const Capture& capture, const PackageSolution& solut
   return description;
 }
 
+/// What the files of a map get of one band.
+struct BandRows {
+  int rows = 0;
+  std::vector<std::byte> neutral;
+  std::vector<std::byte> codes;  // [C][rows]
+};
+
+/// The files are written while the device works on the band that follows.
 void writeMap(device::DeviceContext& context, const MapSolution& solution, int index, int differences,
               const BandPass& pass, package::PackageWriter& writer) {
   TextureEncoder encoder(context, differences);
-  std::vector<std::byte> codes;
+  BandRows at_device, at_files;
+  tbb::task_group files;
   pass(*solution.map, *solution.source, [&](const MapBand& band) {
-    const int rows = band.end - band.begin;
-    const std::size_t bytes = static_cast<std::size_t>(rows) *
-                              static_cast<std::size_t>(band.shape.width * band.shape.channels * solution.bits / 8);
-    codes.resize(bytes * static_cast<std::size_t>(differences));
+    at_device.rows = band.end - band.begin;
+    const auto rows = static_cast<std::size_t>(at_device.rows);
+    const std::size_t code_bytes =
+        rows * static_cast<std::size_t>(band.shape.width * band.shape.channels * solution.bits / 8);
+    at_device.codes.resize(code_bytes * static_cast<std::size_t>(differences));
     const cl::Buffer& textures = solution.source->compute(*solution.map, band);
-    encoder.encode(band.tiles, band.shape, textures, solution.encoding, solution.bits, codes);
-    const std::size_t neutral_bytes = static_cast<std::size_t>(rows) * solution.map->samples->shape().rowBytes();
-    tbb::parallel_for(-1, differences, [&](int i) {
-      if (i < 0) {
-        writer.writeNeutralRows(index, band.samples.first(neutral_bytes), rows);
-      } else {
-        writer.writeDifferenceRows(index, i, std::span(codes).subspan(static_cast<std::size_t>(i) * bytes, bytes),
-                                   rows);
-      }
-    });
+    encoder.encode(band.tiles, band.shape, textures, solution.encoding, solution.bits, at_device.codes);
+    const auto neutral = band.samples.first(rows * solution.map->samples->shape().rowBytes());
+    at_device.neutral.assign(neutral.begin(), neutral.end());
+    files.wait();
+    std::swap(at_device, at_files);
+    files.run([&] { writer.writeNeutralRows(index, at_files.neutral, at_files.rows); });
+    for (int i = 0; i < differences; ++i) {
+      const auto codes = std::span(at_files.codes).subspan(static_cast<std::size_t>(i) * code_bytes, code_bytes);
+      files.run([&, i, codes] { writer.writeDifferenceRows(index, i, codes, at_files.rows); });
+    }
   });
+  files.wait();
 }
 
 }  // namespace

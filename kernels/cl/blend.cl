@@ -231,8 +231,8 @@ inline void widen_quads(global const uchar* quads, floats code[4]) {
                                       EIGHT_BYTES(48));
   high.bytes = __builtin_shufflevector(zeros.bytes, all.bytes, EIGHT_BYTES(8), EIGHT_BYTES(24), EIGHT_BYTES(40),
                                        EIGHT_BYTES(56));
-#define WIDEN(half, from)                                                                                    \
-  wide.halves = __builtin_shufflevector(half.halves, magic.halves, FOUR_HALVES(from), FOUR_HALVES(8 + from), \
+#define WIDEN(words, from)                                                                                   \
+  wide.halves = __builtin_shufflevector(words.halves, magic.halves, FOUR_HALVES(from), FOUR_HALVES(8 + from), \
                                         FOUR_HALVES(16 + from), FOUR_HALVES(24 + from))
   WIDEN(low, 0);
   code[0] = wide.floats;

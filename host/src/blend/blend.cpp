@@ -32,11 +32,16 @@ Plane codePlane(const TextureShape& shape, int quad_planes, int channel, int dif
 /// Texels beyond the width keep what was there; the frame's padding is never read.
 template <typename Sample>
 void splitRow(const std::byte* row, const TextureShape& shape, int channel, Plane plane, std::byte* to) {
-  for (int x = 0; x < shape.width; ++x) {
-    const std::size_t in_tile = size(x % kTileWidth);
-    const std::size_t in_plane = plane.begin + in_tile / 4 * plane.quad_stride + in_tile % 4;
-    std::memcpy(to + size(x / kTileWidth) * shape.tileBytes() + in_plane * sizeof(Sample),
-                row + (size(x) * size(shape.channels) + size(channel)) * sizeof(Sample), sizeof(Sample));
+  const std::size_t tile_bytes = shape.tileBytes();
+  const std::size_t texel_bytes = size(shape.channels) * sizeof(Sample);
+  row += size(channel) * sizeof(Sample);
+  for (std::size_t x0 = 0; x0 < size(shape.width); x0 += kTileWidth) {
+    const std::size_t count = std::min<std::size_t>(kTileWidth, size(shape.width) - x0);
+    for (std::size_t x = 0; x < count; ++x) {
+      const std::size_t in_plane = plane.begin + x / 4 * plane.quad_stride + x % 4;
+      std::memcpy(to + in_plane * sizeof(Sample), row + (x0 + x) * texel_bytes, sizeof(Sample));
+    }
+    to += tile_bytes;
   }
 }
 

@@ -14,6 +14,7 @@
 
 #include "compress/search/branch_and_bound.hpp"
 #include "compress/search/cycle_relaxation.hpp"
+#include "compress/search/group_minimum.hpp"
 #include "reference/permutation_search.hpp"
 #include "tolerances.hpp"
 
@@ -235,9 +236,34 @@ TEST(PermutationGroup, ProductsAndInverses) {
       EXPECT_EQ(group.product(a, group.inverse(a)), 0);
       EXPECT_EQ(group.product(a, 0), a);
       const int b = (7 * a + 3) % group.order();
-      EXPECT_EQ(group.after(b)[a], group.product(a, b));
       for (int c = 0; c < clusters; ++c)
         EXPECT_EQ(group.image(group.product(a, b), c), group.image(a, group.image(b, c)));
+    }
+  }
+}
+
+TEST(GroupMinimum, IsTheLeastSumOverAllProducts) {
+  std::mt19937_64 random(11);
+  for (int clusters = 1; clusters <= kMaxListedClusters; ++clusters) {
+    const PermutationGroup group(clusters);
+    const auto order = static_cast<std::size_t>(group.order());
+    std::vector<double> outer(order), inner(order), result(order);
+    for (double& value : outer) value = static_cast<double>(random() >> 11) * 0x1p-53;
+    for (double& value : inner) value = static_cast<double>(random() >> 11) * 0x1p-53;
+    GroupMinimum minimum(group);
+    for (int inverted = 0; inverted < 8; ++inverted) {
+      SCOPED_TRACE(testing::Message() << "C = " << clusters << ", inverted " << inverted);
+      const auto at = [&](int element, int bit) {
+        return static_cast<std::size_t>((inverted & bit) != 0 ? group.inverse(element) : element);
+      };
+      minimum({outer, (inverted & 1) != 0}, {inner, (inverted & 2) != 0}, (inverted & 4) != 0, result);
+      for (int a = 0; a < group.order(); ++a) {
+        double least = outer[at(0, 1)] + inner[at(a, 2)];
+        for (int b = 1; b < group.order(); ++b) {
+          least = std::min(least, outer[at(b, 1)] + inner[at(group.product(a, b), 2)]);
+        }
+        EXPECT_EQ(result[at(a, 4)], least) << "a = " << a;
+      }
     }
   }
 }

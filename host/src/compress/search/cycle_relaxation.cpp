@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <utility>
 
 #include "compress/search/coordinate_descent.hpp"
@@ -38,38 +37,17 @@ void fillRelativeCosts(const SeamTables& tables, int pair, const PermutationGrou
   }
 }
 
-/// result[y]: the smallest outer[x] + inner[rows(x)[y]] over x.
-template <typename Rows>
-void minimumOverOuter(const std::vector<double>& outer, const std::vector<double>& inner, const Rows& rows,
-                      std::vector<double>& result) {
-  const std::size_t order = outer.size();
-  std::fill(result.begin(), result.end(), std::numeric_limits<double>::infinity());
-  double* const results = result.data();
-  const double* const values = inner.data();
-  for (std::size_t x = 0; x < order; ++x) {
-    const std::uint8_t* row = rows(static_cast<int>(x));
-    const double own = outer[x];
-    for (std::size_t y = 0; y < order; ++y) {
-      const double sum = own + values[row[y]];
-      results[y] = sum < results[y] ? sum : results[y];
-    }
-  }
-}
-
 /// Smallest cost of the triangle by the relative permutation of one of its pairs, C! long: x of (k, l), y of (l, m) and
 /// x y of (k, m).
-void minMarginals(const CycleRelaxation::Triangle& triangle, int side, const PermutationGroup& group,
+void minMarginals(const CycleRelaxation::Triangle& triangle, int side, GroupMinimum& minimum,
                   std::vector<double>& result) {
   const auto& [kl, lm, km] = triangle.costs;
   if (side == 0) {
-    minimumOverOuter(
-        lm, km, [&](int y) { return group.after(y); }, result);
-  } else if (side == 1) {
-    minimumOverOuter(
-        kl, km, [&](int x) { return group.times(x); }, result);
-  } else {  // y = x^-1 (x y)
-    minimumOverOuter(
-        kl, lm, [&](int x) { return group.times(group.inverse(x)); }, result);
+    minimum({lm}, {km}, false, result);
+  } else if (side == 1) {  // x y is the inverse of y^-1 x^-1
+    minimum({kl, true}, {km, true}, true, result);
+  } else {  // y = x^-1 (x y) is the inverse of (x y)^-1 x
+    minimum({kl}, {lm, true}, true, result);
   }
   const auto& own = triangle.costs[static_cast<std::size_t>(side)];
   for (std::size_t x = 0; x < result.size(); ++x) result[x] += own[x];
@@ -78,7 +56,7 @@ void minMarginals(const CycleRelaxation::Triangle& triangle, int side, const Per
 }  // namespace
 
 CycleRelaxation::CycleRelaxation(const SeamTables& tables, int max_triangles)
-    : masks_(tables.masks), group_(tables.clusters), pairs_(tables.pairs) {
+    : masks_(tables.masks), group_(tables.clusters), minimum_(group_), pairs_(tables.pairs) {
   const auto order = static_cast<std::size_t>(group_.order());
   pair_costs_.resize(pairs_.size() * order);
   scratch_.resize(order);
@@ -110,7 +88,7 @@ std::span<const double> CycleRelaxation::row(const std::vector<double>& values, 
 }
 
 /// How far the triangle's best consistent choice lies above its pairs' minima.
-double CycleRelaxation::gain(const Triangle& triangle) const {
+double CycleRelaxation::gain(const Triangle& triangle) {
   Triangle whole = triangle;
   double separate = 0.0;
   for (std::size_t side = 0; side < 3; ++side) {
@@ -119,7 +97,7 @@ double CycleRelaxation::gain(const Triangle& triangle) const {
     separate += lowest(costs);
   }
   std::vector<double> marginals(static_cast<std::size_t>(group_.order()));
-  minMarginals(whole, 0, group_, marginals);
+  minMarginals(whole, 0, minimum_, marginals);
   return lowest(marginals) - separate;
 }
 
@@ -157,7 +135,7 @@ void CycleRelaxation::visit(int pair, Direction direction) {
   int forward = 0, backward = 0;
   for (const auto& [t, side] : corners) {
     Triangle& triangle = triangles_[static_cast<std::size_t>(t)];
-    minMarginals(triangle, side, group_, scratch_);
+    minMarginals(triangle, side, minimum_, scratch_);
     auto& own = triangle.costs[static_cast<std::size_t>(side)];
     for (std::size_t x = 0; x < order; ++x) {
       costs[x] += scratch_[x];

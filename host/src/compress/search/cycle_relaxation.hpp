@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "compress/search/group_minimum.hpp"
 #include "compress/search/permutation_group.hpp"
 #include "compress/search/seam_cost.hpp"
 
@@ -74,11 +75,12 @@ class CycleRelaxation {
 
   std::span<const double> row(const std::vector<double>& values, int pair) const;
   void keepTriangles(const std::vector<int>& pair_of, int max_triangles);
-  double gain(const Triangle& triangle) const;
+  double gain(const Triangle& triangle);
   void visit(int pair, Direction direction);
 
   int masks_;
   PermutationGroup group_;
+  GroupMinimum minimum_;
   std::vector<MaskPair> pairs_;  // rising; visited in this order and back
   std::vector<double> pair_costs_;
   std::vector<double> beliefs_;  // what all triangles and the pair itself said when iterate() last came by

@@ -29,16 +29,13 @@ class PermutationGroup {
   }
   /// Row of products, C! long: entry b is a after b.
   const std::uint8_t* times(int a) const { return products_.data() + static_cast<std::size_t>(a) * elements_.size(); }
-  /// Row of products, C! long: entry a is a after b.
-  const std::uint8_t* after(int b) const { return transposed_.data() + static_cast<std::size_t>(b) * elements_.size(); }
   int product(int a, int b) const { return times(a)[b]; }
   int inverse(int a) const { return inverses_[static_cast<std::size_t>(a)]; }
 
  private:
   int clusters_;
   std::vector<Element> elements_;
-  std::vector<std::uint8_t> products_;    // C! x C!
-  std::vector<std::uint8_t> transposed_;  // C! x C!
+  std::vector<std::uint8_t> products_;  // C! x C!
   std::vector<int> inverses_;
 };
 

@@ -92,7 +92,7 @@ typedef uchar uchar64 __attribute__((ext_vector_type(64)));
 typedef ushort ushort32 __attribute__((ext_vector_type(32)));
 typedef union {
   uint16 words;
-  float16 floats;
+  float16 values;
   ushort32 halves;
   uchar64 bytes;
 } texels16;
@@ -235,13 +235,13 @@ inline void widen_quads(global const uchar* quads, floats code[4]) {
   wide.halves = __builtin_shufflevector(words.halves, magic.halves, FOUR_HALVES(from), FOUR_HALVES(8 + from), \
                                         FOUR_HALVES(16 + from), FOUR_HALVES(24 + from))
   WIDEN(low, 0);
-  code[0] = wide.floats;
+  code[0] = wide.values;
   WIDEN(low, 4);
-  code[1] = wide.floats;
+  code[1] = wide.values;
   WIDEN(high, 0);
-  code[2] = wide.floats;
+  code[2] = wide.values;
   WIDEN(high, 4);
-  code[3] = wide.floats;
+  code[3] = wide.values;
 }
 #endif
 

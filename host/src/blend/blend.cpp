@@ -58,8 +58,9 @@ void splitRowOf(std::size_t bytes, const TextureShape& shape, const std::byte* r
   }
 }
 
+/// The kernel's third row of `encoding` takes back the bias that codes in quads come with.
 std::vector<float> encodingOf(const TextureShape& shape, int quad_planes) {
-  constexpr double kCodeBias = 32768.0;
+  constexpr double kCodeBias = 32768.0;  // CODE_BIAS of kernels/cl/blend.cl
   std::vector<float> encoding = shape.scale;
   encoding.insert(encoding.end(), shape.zero.begin(), shape.zero.end());
   for (int i = 0; i < shape.differences; ++i) {

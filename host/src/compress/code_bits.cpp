@@ -35,8 +35,6 @@ double codeSquaredError(std::span<const TextureRange> ranges, std::span<const do
   return error;
 }
 
-int codeBits(double code_error, double error, SampleType type) {
-  return type != SampleType::kUint8 && code_error > 0.05 * error ? 16 : 8;
-}
+int codeBits(double code_error, double error) { return code_error > 0.05 * error ? 16 : 8; }
 
 }  // namespace facezip::compress

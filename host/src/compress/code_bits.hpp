@@ -7,7 +7,6 @@
 
 #include "compress/codes/texture_encoding.hpp"
 #include "compress/refine/grid_weights.hpp"
-#include "facezip/sample_type.hpp"
 
 namespace facezip::compress {
 
@@ -21,8 +20,8 @@ std::vector<double> meanSquares(const EncodedWeights& weights, const WeightSpace
 /// weight_squares  C
 double codeSquaredError(std::span<const TextureRange> ranges, std::span<const double> weight_squares);
 
-/// 16 where samples have more than 8 bits and 8-bit codes would add more than a twentieth to the squared error (2.5 %
-/// to the RMSE); else 8. 8-bit frames round by more than the codes of their differences do.
-int codeBits(double code_error, double error, SampleType type);
+/// Of a map whose samples have more than 8 bits: 16 where 8-bit codes would add more than a twentieth to the squared
+/// error (2.5 % to the RMSE), else 8.
+int codeBits(double code_error, double error);
 
 }  // namespace facezip::compress

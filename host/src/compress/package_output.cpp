@@ -96,12 +96,16 @@ void writeMap(device::DeviceContext& context, const MapSolution& solution, int i
 void writePackage(device::DeviceContext& context, const Capture& capture, const PackageSolution& solution,
                   const BandPass& pass, const std::filesystem::path& directory) {
   package::PackageWriter writer(describe(capture, solution), directory);
+  tbb::task_group weights;  // beside the maps
   for (std::size_t set = 0; set < solution.weights.size(); ++set) {
-    writer.writeWeights(static_cast<int>(set), std::as_bytes(std::span(solution.weights[set].codes)));
+    weights.run([&, set] {
+      writer.writeWeights(static_cast<int>(set), std::as_bytes(std::span(solution.weights[set].codes)));
+    });
   }
   for (std::size_t m = 0; m < solution.maps.size(); ++m) {
     writeMap(context, solution.maps[m], static_cast<int>(m), solution.differences, pass, writer);
   }
+  weights.wait();
   image::writeImage(directory / package::kMasksFile, solution.guides.picture);
   writer.finish();
 }

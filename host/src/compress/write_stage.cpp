@@ -22,7 +22,8 @@ int bitsOf(const CompressionState& state, const WeightGroup& group, std::size_t 
   const SampleType type = group.maps[m]->samples->shape().type;
   // What was chosen was chosen for its size: its bits are kept to.
   if (state.report.rate) return type == SampleType::kUint8 ? 8 : state.report.rate->code_bits;
-  return codeBits(codeError(state, group, m), group.errors[m], type);
+  if (type == SampleType::kUint8) return 8;  // frames round by more than the codes of their differences do
+  return codeBits(codeError(state, group, m), group.errors[m]);
 }
 
 /// Where the difference textures of the groups come from.

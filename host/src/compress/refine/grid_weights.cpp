@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <cmath>
 #include <cstring>
 
 namespace facezip::compress {
@@ -81,24 +80,26 @@ std::pair<float, float> GridWeights::rangeOf(int texture, std::span<const std::u
 
 EncodedWeights GridWeights::encode(std::span<const std::uint8_t> used, double clipped) const {
   assert(used.size() == cellsOf(space_) && clipped >= 0.0 && clipped < 0.5);
+  const auto textures = static_cast<std::size_t>(space_.textures);
+  std::vector<std::pair<float, float>> ranges(textures);
+  tbb::parallel_for(std::size_t{0}, textures,
+                    [&](std::size_t i) { ranges[i] = rangeOf(static_cast<int>(i), used, clipped); });
   EncodedWeights encoded;
   std::vector<float> steps;  // codes per unit
-  for (int i = 0; i < space_.textures; ++i) {
-    const auto [low, high] = rangeOf(i, used, clipped);
+  for (const auto& [low, high] : ranges) {
     const float scale = (high - low) / 255.0f;
     encoded.scale.push_back(static_cast<double>(scale));
     encoded.offset.push_back(static_cast<double>(low));
     steps.push_back(scale > 0.0f ? 1.0f / scale : 0.0f);
   }
   const std::size_t cells = cellsOf(space_);
-  const auto textures = static_cast<std::size_t>(space_.textures);
   encoded.codes.resize(cells * textures * static_cast<std::size_t>(space_.expressions));
   tbb::parallel_for(0, space_.expressions, [&](int n) {
     std::uint8_t* out = encoded.codes.data() + static_cast<std::size_t>(n) * cells * textures;
     for (std::size_t cell = 0; cell < cells; ++cell) {
       for (std::size_t i = 0; i < textures; ++i) {
         const float position = (at(cell, static_cast<int>(i), n) - static_cast<float>(encoded.offset[i])) * steps[i];
-        *out++ = static_cast<std::uint8_t>(std::clamp(std::round(position), 0.0f, 255.0f));
+        *out++ = static_cast<std::uint8_t>(std::clamp(position, 0.0f, 255.0f) + 0.5f);
       }
     }
   });

@@ -74,50 +74,53 @@ TexelMasks::TexelMasks(const geometry::TriangleMesh& mesh, const geometry::Regio
   assert(masks.vertexCount() == region.vertexCount());
 }
 
-void TexelMasks::accumulate(const TexelSample& sample, float weight, std::span<float> accumulator,
-                            std::vector<int>& touched) const {
-  const float barycentric[3] = {sample.b0, sample.b1, 1.0f - sample.b0 - sample.b1};
+TexelMasks::Cursor::Cursor(const TexelMasks& masks)
+    : masks_(masks), place_(static_cast<std::size_t>(masks.maskCount()), -1) {}
+
+void TexelMasks::Cursor::moveTo(int triangle) {
+  triangle_ = triangle;
+  for (const Corners& old : corners_) place_[static_cast<std::size_t>(old.mask)] = -1;
+  corners_.clear();
+  const geometry::MaskWeights& masks = masks_.masks_;
   for (int corner = 0; corner < 3; ++corner) {
-    const int mesh_vertex = mesh_.triangles(sample.triangle, corner);
-    const auto vertex = static_cast<std::size_t>(region_.region_vertices[static_cast<std::size_t>(mesh_vertex)]);
-    const float share = std::max(0.0f, barycentric[corner]) * weight;
-    if (share == 0.0f) continue;
-    for (int e = masks_.row_begin[vertex]; e < masks_.row_begin[vertex + 1]; ++e) {
-      const auto entry = static_cast<std::size_t>(e);
-      float& value = accumulator[static_cast<std::size_t>(masks_.mask_index[entry])];
-      if (value == 0.0f) touched.push_back(masks_.mask_index[entry]);
-      value += share * masks_.weight[entry];
+    const auto mesh_vertex = static_cast<std::size_t>(masks_.mesh_.triangles(triangle, corner));
+    const auto vertex = static_cast<std::size_t>(masks_.region_.region_vertices[mesh_vertex]);
+    for (int e = masks.row_begin[vertex]; e < masks.row_begin[vertex + 1]; ++e) {
+      const int mask = masks.mask_index[static_cast<std::size_t>(e)];
+      int& place = place_[static_cast<std::size_t>(mask)];
+      if (place < 0) {
+        place = static_cast<int>(corners_.size());
+        corners_.push_back({mask, {}});
+      }
+      corners_[static_cast<std::size_t>(place)].weights[static_cast<std::size_t>(corner)] =
+          masks.weight[static_cast<std::size_t>(e)];
     }
   }
 }
 
 void TexelMasks::addTile(const std::vector<TexelSample>& samples, int width, int rows, TilePosition position,
-                         std::vector<float>& scratch, TileMasks& out) const {
+                         Cursor& cursor, std::vector<float>& scratch, TileMasks& out) const {
   const int x_end = std::min(width, (position.x + 1) * kTileSide);
   const int y_end = std::min(rows, (position.y + 1) * kTileSide);
   // scratch holds [mask][256] for every mask and is all zero between calls.
   std::vector<int> active;
-  std::vector<float> texel(static_cast<std::size_t>(masks_.mask_count), 0.0f);
-  std::vector<int> touched;
   std::vector<char> is_active(static_cast<std::size_t>(masks_.mask_count), 0);
-  std::vector<float> texel_weights(kTileTexels, 0.0f);
+  std::array<float, kTileTexels> texel_weights{};
   for (int y = position.y * kTileSide; y < y_end; ++y) {
     for (int x = position.x * kTileSide; x < x_end; ++x) {
       const TexelSample& sample =
           samples[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
       if (sample.triangle < 0) continue;
-      const int t = (y - position.y * kTileSide) * kTileSide + (x - position.x * kTileSide);
-      if (sample.kind == TexelSample::Kind::kCovered) texel_weights[static_cast<std::size_t>(t)] = 1.0f;
-      touched.clear();
-      accumulate(sample, 1.0f, texel, touched);
-      for (const int mask : touched) {
-        if (!is_active[static_cast<std::size_t>(mask)]) {
-          is_active[static_cast<std::size_t>(mask)] = 1;
-          active.push_back(mask);
+      const auto t = static_cast<std::size_t>((y - position.y * kTileSide) * kTileSide + (x - position.x * kTileSide));
+      if (sample.kind == TexelSample::Kind::kCovered) texel_weights[t] = 1.0f;
+      for (const Corners& corners : cursor.at(sample.triangle)) {
+        const auto mask = static_cast<std::size_t>(corners.mask);
+        const float value = corners.at(sample);
+        scratch[mask * kTileTexels + t] = value;
+        if (value > 0.0f && !is_active[mask]) {
+          is_active[mask] = 1;
+          active.push_back(corners.mask);
         }
-        scratch[static_cast<std::size_t>(mask) * kTileTexels + static_cast<std::size_t>(t)] =
-            texel[static_cast<std::size_t>(mask)];
-        texel[static_cast<std::size_t>(mask)] = 0.0f;
       }
     }
   }
@@ -139,8 +142,9 @@ compress::TileMasks TexelMasks::tiles(const UvRaster& raster, int begin, int end
       texels == Texels::kCovered ? raster.coveredRows(begin, end) : raster.rows(begin, end);
   const int tile_columns = (raster.width() + kTileSide - 1) / kTileSide;
   return tilesByRows(end - begin, [&](int y, TileMasks& out) {
+    Cursor cursor(*this);
     std::vector<float> scratch(static_cast<std::size_t>(masks_.mask_count) * kTileTexels, 0.0f);
-    for (int x = 0; x < tile_columns; ++x) addTile(samples, raster.width(), end - begin, {x, y}, scratch, out);
+    for (int x = 0; x < tile_columns; ++x) addTile(samples, raster.width(), end - begin, {x, y}, cursor, scratch, out);
   });
 }
 

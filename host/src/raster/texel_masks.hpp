@@ -1,6 +1,8 @@
 // texel_masks.hpp - masks from the vertices of the region to the texels of a band and the cells of the weight grid.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <span>
 #include <vector>
 
@@ -33,14 +35,39 @@ class TexelMasks {
   /// vanish at every texel.
   std::vector<compress::MaskPair> overlappingPairs() const;
 
-  /// Adds the masks of `sample`, times `weight`, to accumulator[mask] (K floats); appends masks met for the first time
-  /// (those at 0 before) to `touched`.
-  void accumulate(const TexelSample& sample, float weight, std::span<float> accumulator,
-                  std::vector<int>& touched) const;
+  /// A mask inside a triangle.
+  struct Corners {
+    int mask;
+    std::array<float, 3> weights;
+
+    float at(const TexelSample& sample) const {
+      return sample.b0 * weights[0] + sample.b1 * weights[1] +
+             std::max(0.0f, 1.0f - sample.b0 - sample.b1) * weights[2];
+    }
+  };
+
+  /// Finds the masks of triangles, of one after the other: neighbouring texels mostly lie in the same.
+  class Cursor {
+   public:
+    explicit Cursor(const TexelMasks& masks);
+    /// Masks that are above zero at a corner of a triangle of the region, in no order. Valid until the next call.
+    std::span<const Corners> at(int triangle) {
+      if (triangle != triangle_) moveTo(triangle);
+      return corners_;
+    }
+
+   private:
+    void moveTo(int triangle);
+
+    const TexelMasks& masks_;
+    int triangle_ = -1;
+    std::vector<Corners> corners_;
+    std::vector<int> place_;  // of every mask in corners_; -1 where it is not there
+  };
 
  private:
   void addTile(const std::vector<TexelSample>& samples, int width, int rows, compress::TilePosition position,
-               std::vector<float>& scratch, compress::TileMasks& out) const;
+               Cursor& cursor, std::vector<float>& scratch, compress::TileMasks& out) const;
 
   const geometry::TriangleMesh& mesh_;
   const geometry::RegionMesh& region_;

@@ -11,9 +11,10 @@ namespace facezip::raster {
 namespace {
 
 /// Appends the mean of the masks over the covered texels of a cell.
-void appendCell(const TexelMasks& masks, const std::vector<TexelSample>& samples, int image_width, int rows, int cell_x,
-                int scale, std::vector<float>& accumulator, std::vector<int>& touched, compress::CellMasks& out) {
-  touched.clear();
+/// sums  of every mask; all zero between calls
+void appendCell(TexelMasks::Cursor& cursor, const std::vector<TexelSample>& samples, int image_width, int rows,
+                int cell_x, int scale, std::vector<float>& sums, compress::CellMasks& out) {
+  std::vector<int> touched;
   int covered = 0;
   const int x_end = std::min(image_width, (cell_x + 1) * scale);
   for (int y = 0; y < rows; ++y) {
@@ -22,12 +23,17 @@ void appendCell(const TexelMasks& masks, const std::vector<TexelSample>& samples
           samples[static_cast<std::size_t>(y) * static_cast<std::size_t>(image_width) + static_cast<std::size_t>(x)];
       if (sample.kind != TexelSample::Kind::kCovered) continue;
       ++covered;
-      masks.accumulate(sample, 1.0f, accumulator, touched);
+      for (const TexelMasks::Corners& corners : cursor.at(sample.triangle)) {
+        const float value = corners.at(sample);
+        float& sum = sums[static_cast<std::size_t>(corners.mask)];
+        if (sum == 0.0f && value > 0.0f) touched.push_back(corners.mask);
+        sum += value;
+      }
     }
   }
   std::sort(touched.begin(), touched.end());
   for (const int mask : touched) {
-    float& sum = accumulator[static_cast<std::size_t>(mask)];
+    float& sum = sums[static_cast<std::size_t>(mask)];
     out.mask_index.push_back(mask);
     out.mask_weights.push_back(sum / static_cast<float>(covered));
     sum = 0.0f;
@@ -55,12 +61,12 @@ WeightGrid makeWeightGrid(const TexelMasks& masks, const UvRaster& raster, int s
     const int begin = cell_y * scale;
     const int end = std::min(raster.height(), begin + scale);
     const std::vector<TexelSample> samples = raster.coveredRows(begin, end);
-    std::vector<float> accumulator(static_cast<std::size_t>(masks.maskCount()), 0.0f);
-    std::vector<int> touched;
+    TexelMasks::Cursor cursor(masks);
+    std::vector<float> sums(static_cast<std::size_t>(masks.maskCount()), 0.0f);
     compress::CellMasks& row = rows[static_cast<std::size_t>(cell_y)];
     row.cell_begin.push_back(0);
     for (int x = 0; x < grid.width; ++x) {
-      appendCell(masks, samples, raster.width(), end - begin, x, scale, accumulator, touched, row);
+      appendCell(cursor, samples, raster.width(), end - begin, x, scale, sums, row);
     }
   });
   for (const compress::CellMasks& row : rows) {

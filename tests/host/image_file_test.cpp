@@ -169,6 +169,26 @@ TEST(ImageReader, TruncatedPngNamesTheFile) {
   }
 }
 
+TEST(ImageReader, NoByteOfAPngIsDamagedUnnoticed) {
+  const test::TemporaryDirectory folder;
+  const image::Image image = ramp(21, 13, 3, image::SampleType::kUint8);
+  image::writeImage(folder / "a.png", image, "sRGB");
+  const std::string whole = test::contentsOf(folder / "a.png");
+  int refused = 0;
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    std::string damaged = whole;
+    damaged[i] = static_cast<char>(damaged[i] ^ 0x10);
+    std::ofstream(folder / "b.png", std::ios::binary) << damaged;
+    try {
+      const image::Image read = image::readImage(folder / "b.png");
+      EXPECT_EQ(read.samples, image.samples) << "byte " << i;  // what is not needed for the samples may be damaged
+    } catch (const InputError&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, static_cast<int>(whole.size()) / 2);
+}
+
 TEST(ImageReader, NaNNamesRowAndColumn) {
   const test::TemporaryDirectory folder;
   image::Image image = ramp(8, 4, 3, image::SampleType::kFloat32);

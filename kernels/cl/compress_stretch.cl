@@ -12,26 +12,6 @@
 //          difference_fit.cl; ROWS: 1, 2, 4, 8 or 16
 // Sums     expressions in order
 
-#ifndef CHANNELS
-#define CHANNELS 3
-#define DIFF_T short
-#endif
-#ifndef EXPRESSIONS
-#define TEXTURES 2
-#define EXPRESSIONS 20
-#define EXPRESSION_LANES 32
-#define WEIGHT_SCALE 8
-#define CELL_ALONE  // common.cl came before these
-#endif
-#ifndef ROWS
-#define ROWS 16
-#endif
-#ifdef CELL_ALONE
-inline float cell_position(int texel, int cells) {
-  return clamp((float)(2 * texel + 1 - WEIGHT_SCALE) * (1.0f / (2 * WEIGHT_SCALE)), 0.0f, (float)(cells - 1));
-}
-#endif
-
 #define CELL_FLOATS (TEXTURES * EXPRESSION_LANES)
 
 kernel void compress_stretch(global const int2* tiles, global const float* active, global const DIFF_T* differences,
@@ -41,15 +21,15 @@ kernel void compress_stretch(global const int2* tiles, global const float* activ
   const int top = (int)get_global_id(0) / TILE_SIDE * ROWS;
   const ulong tile = get_global_id(1);
   const float x = cell_position(tiles[tile].x * TILE_SIDE + column, cell_columns);
-  const int left = min((int)x, max(cell_columns - 2, 0));
+  const int left = (int)x;
   const float right_share = x - (float)left;
-  const ulong right_step = cell_columns > 1 ? CELL_FLOATS : 0;
+  const ulong right_step = left + 1 < cell_columns ? CELL_FLOATS : 0;
   for (int row = top; row < top + ROWS; ++row) {
     const int t = row * TILE_SIDE + column;
     const float y = cell_position(first_row + tiles[tile].y * TILE_SIDE + row, cell_rows);
-    const int upper = min((int)y, max(cell_rows - 2, 0));
+    const int upper = (int)y;
     const float lower_share = y - (float)upper;
-    const ulong lower_step = cell_rows > 1 ? (ulong)cell_columns * CELL_FLOATS : 0;
+    const ulong lower_step = upper + 1 < cell_rows ? (ulong)cell_columns * CELL_FLOATS : 0;
     const bool wanted = active[tile * TILE_TEXELS + t] > 0.0f;
     // Texels that hang over the image's edge have no cells of their own in the window.
     global const float* cell =

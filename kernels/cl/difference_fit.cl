@@ -118,13 +118,11 @@ kernel void difference_fit(global const int2* restrict tiles, global const float
   const int first_column = (int)cell_position(x0, cell_columns);
   floats hats[CELL_COLUMNS];
 #if LANES == 1
-  const floats texel = (float)x0;
+  const floats position = cell_position(x0, cell_columns) - (float)first_column;
 #else
-  const floats texel = (float)x0 + (float16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  const floats position = cell_positions_of_16(x0, first_column, cell_columns);
 #endif
-  const floats position = clamp((2.0f * texel + (1.0f - WEIGHT_SCALE)) * (1.0f / (2 * WEIGHT_SCALE)), 0.0f,
-                                (float)(cell_columns - 1));
-  for (int j = 0; j < CELL_COLUMNS; ++j) hats[j] = fmax(1.0f - fabs(position - (float)(first_column + j)), 0.0f);
+  for (int j = 0; j < CELL_COLUMNS; ++j) hats[j] = fmax(1.0f - fabs(position - (float)j), 0.0f);
 
 #if LANES > 1
   floats above[EXPRESSIONS][TEXTURES];

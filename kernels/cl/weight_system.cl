@@ -123,11 +123,9 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void weight_system(
     rows.fraction[y] = position - (float)(int)position;
   }
   const int first_column = (int)cell_position(x0, cell_columns);
-  const float16 texel = (float)x0 + (float16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-  const float16 position = clamp((2.0f * texel + (1.0f - WEIGHT_SCALE)) * (1.0f / (2 * WEIGHT_SCALE)), 0.0f,
-                                 (float)(cell_columns - 1));
+  const float16 position = cell_positions_of_16(x0, first_column, cell_columns);
   float16 hats[CELLS];
-  for (int j = 0; j < CELLS; ++j) hats[j] = fmax(1.0f - fabs(position - (float)(first_column + j)), 0.0f);
+  for (int j = 0; j < CELLS; ++j) hats[j] = fmax(1.0f - fabs(position - (float)j), 0.0f);
 
   texel_weights += tile * TILE_SIDE;
   textures += tile * (TEXTURES * CHANNELS * TILE_SIDE);

@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <limits>
 #include <random>
 #include <vector>
 
 #include "canary_buffer.hpp"
 #include "compress/bands/difference.hpp"
+#include "compress/refine/refinement.hpp"
 #include "reference/compress_stretch.hpp"
 #include "reference/difference.hpp"
 #include "synthetic_band.hpp"
@@ -60,8 +63,16 @@ TEST_P(CompressStretch, EqualsReference) {
     if (static_cast<int>(i % space.lanes()) < shape.expressions)
       weights[i] = static_cast<float>(test::unitRandom(random));
   }
+  // Cells that the host would not upload for this band are not to be touched.
+  const WindowRows held = cellRowsOf(first_row, image_rows, scale, space.rows);
+  std::vector<float> device_weights = weights;
+  const auto row_begin = [&](int row) {
+    return device_weights.begin() + row * static_cast<std::ptrdiff_t>(space.rowFloats());
+  };
+  std::fill(device_weights.begin(), row_begin(held.begin), std::numeric_limits<float>::quiet_NaN());
+  std::fill(row_begin(held.end), device_weights.end(), std::numeric_limits<float>::quiet_NaN());
   WeightWindow window(context, space);
-  window.set({0, space.rows, 0, space.rows}, weights, weights);
+  window.set({0, space.rows, 0, space.rows}, device_weights, device_weights);
   const std::vector<double> of_tiles =
       reference::differences(band.values, test::tilePositions(masks), shape.width, shape.rows, shape.channels,
                              shape.expressions, static_cast<double>(image::unit255(shape.sample_type)));
@@ -102,13 +113,13 @@ TEST_P(CompressStretch, EqualsReference) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, CompressStretch,
-                         testing::Values(Case{{93, 16, 3, 3, SampleType::kUint8}, 8, 0},
-                                         Case{{93, 10, 1, 1, SampleType::kUint8}, 8, 32},
-                                         Case{{7, 1, 4, 3, SampleType::kUint16}, 8, 16},
-                                         Case{{64, 16, 2, 2, SampleType::kFloat32}, 1, 0},
-                                         Case{{48, 32, 3, 20, SampleType::kUint8}, 5, 16},
-                                         Case{{33, 16, 3, 37, SampleType::kUint8}, 64, 0}));
+INSTANTIATE_TEST_SUITE_P(
+    Shapes, CompressStretch,
+    testing::Values(Case{{93, 16, 3, 3, SampleType::kUint8}, 8, 0}, Case{{93, 10, 1, 1, SampleType::kUint8}, 8, 32},
+                    Case{{7, 1, 4, 3, SampleType::kUint16}, 8, 16}, Case{{64, 16, 2, 2, SampleType::kFloat32}, 1, 0},
+                    Case{{48, 32, 3, 20, SampleType::kUint8}, 5, 16}, Case{{33, 16, 3, 37, SampleType::kUint8}, 64, 0},
+                    Case{{33, 16, 3, 2, SampleType::kUint8}, 64, 112},
+                    Case{{20, 16, 3, 3, SampleType::kUint8}, 61, 640}));
 
 TEST(CompressStretchLaunch, RefusesBuffersThatAreTooSmall) {
   device::DeviceContext& context = test::testDevice();

@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
+#include "compress/refine/refinement.hpp"
 #include "grid_problem.hpp"
 #include "tolerances.hpp"
 
@@ -57,6 +60,26 @@ TEST_P(WeightFit, DifferenceTexturesSolveEveryTexel) {
       EXPECT_NEAR(errors[tile].weighted, weighted, test::kFitErrorRelative * energy);
       EXPECT_NEAR(errors[tile].plain, plain, test::kFitErrorRelative * energy);
     }
+  }
+}
+
+// What the host uploads for a band are the cells that cellRowsOf() tells.
+TEST_P(WeightFit, DifferenceTexturesTouchNoCellsBeyondTheBand) {
+  const GridCase& which = GetParam();
+  for (const device::KernelVariant variant : variants()) {
+    GridProblem problem(which, variant);
+    const WindowRows rows = problem.window_.rows();
+    const WindowRows held =
+        cellRowsOf(which.first_row, which.first_row + which.shape.rows, which.weight_scale, problem.space_.rows);
+    std::vector<float> weights = problem.window_.weights();
+    const auto row_begin = [&](int row) {
+      return weights.begin() + (row - rows.begin) * static_cast<std::ptrdiff_t>(problem.space_.rowFloats());
+    };
+    std::fill(weights.begin(), row_begin(held.begin), std::numeric_limits<float>::quiet_NaN());
+    std::fill(row_begin(std::min(held.end, rows.end)), weights.end(), std::numeric_limits<float>::quiet_NaN());
+    problem.window_.set(rows, weights, weights);
+    problem.fit_.compute(problem.band(), problem.window_, kRidge);
+    for (const float value : problem.readTextures()) ASSERT_TRUE(std::isfinite(value));
   }
 }
 
@@ -197,6 +220,9 @@ TEST_P(WeightFit, EveryHalfStepLowersTheObjective) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, WeightFit, testing::ValuesIn(kGridCases));
+// Row 640 lies on a cell's centre: 10.5 x 61 - 0.5.
+INSTANTIATE_TEST_SUITE_P(OddScale, WeightFit,
+                         testing::Values(GridCase{{70, 16, 3, 3, SampleType::kUint8}, 61, 2, 640, 9}));
 INSTANTIATE_TEST_SUITE_P(CellsOfOddSidesAndFewTexels, WeightFit,
                          testing::Values(GridCase{{20, 18, 2, 3, SampleType::kUint8}, 5, 1, 0, 0},
                                          GridCase{{7, 5, 3, 2, SampleType::kUint8}, 8, 4, 0, 0}));

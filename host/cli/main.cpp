@@ -1,8 +1,15 @@
 // facezip: one command with verbs.
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <exception>
 #include <new>
+#include <string>
 
 #include "commands.hpp"
 #include "exit_codes.hpp"
@@ -14,9 +21,30 @@
 namespace facezip::cli {
 namespace {
 
-int fail(ExitCode code, const char* what) {
-  fmt::print(stderr, "facezip: error: {}\n", what);
+int fail(ExitCode code, const std::string& what) {
+  std::fputs(("facezip: error: " + what + "\n").c_str(), stderr);
   return code;
+}
+
+int failToPrint() {
+  return fail(kExitOutput, fmt::format("standard output: cannot write: {}; is the disk full?", std::strerror(errno)));
+}
+
+/// A standard stream that the caller closed would be the next file to be opened, and get notes among its bytes.
+void holdStandardStreams() {
+  int stream = 0;
+  do {
+    stream = ::open("/dev/null", O_RDWR);
+  } while (0 <= stream && stream <= STDERR_FILENO);
+  if (stream >= 0) ::close(stream);
+}
+
+/// Compressing keeps every texture of a capture open.
+void raiseLimitOfOpenFiles() {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  limit.rlim_cur = limit.rlim_max;
+  ::setrlimit(RLIMIT_NOFILE, &limit);  // where it may not be raised, opening a file says so
 }
 
 /// Runs the parsed command and turns what it throws into one line and an exit code.
@@ -42,7 +70,7 @@ int runCommand(CLI::App& app, int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return fail(kExitInternal, "out of memory; lower --memory");
   } catch (const std::exception& error) {
-    return fail(kExitInternal, error.what());
+    return std::ferror(stdout) != 0 ? failToPrint() : fail(kExitInternal, error.what());
   }
 }
 
@@ -51,6 +79,8 @@ int runCommand(CLI::App& app, int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace facezip::cli;
+  holdStandardStreams();
+  raiseLimitOfOpenFiles();
   CLI::App app{
       "Compresses the textures of facial blendshapes into a neutral, a few difference textures and weight maps."};
   app.name("facezip");
@@ -74,5 +104,6 @@ int main(int argc, char** argv) {
   addInfoCommand(app, common);
   addDevicesCommand(app, common);
   addDemoCommand(app, common);
-  return runCommand(app, argc, argv);
+  const int code = runCommand(app, argc, argv);
+  return code == kExitSuccess && std::fflush(stdout) != 0 ? failToPrint() : code;
 }

@@ -71,7 +71,7 @@ void TerminalProgress::busy(std::string_view what) {
 
 void TerminalProgress::showLine(const std::string& text) {
   clearLine();
-  fmt::print(stderr, "{} ...", text);
+  std::fputs(fmt::format("{} ...", text).c_str(), stderr);
   std::fflush(stderr);
   line_shown_ = true;
 }
@@ -79,7 +79,8 @@ void TerminalProgress::showLine(const std::string& text) {
 void TerminalProgress::note(std::string_view message) {
   if (quiet_) return;
   clearLine();
-  fmt::print(stderr, "facezip: {}\n", message);
+  // Not fmt::print(), which throws: a job of hours must not end because nobody can read a note.
+  std::fputs(fmt::format("facezip: {}\n", message).c_str(), stderr);
 }
 
 CancelOnSignal::CancelOnSignal(Progress& progress) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <httplib.h>
 
+#include <atomic>
 #include <chrono>
 #include <fstream>
 #include <iterator>
@@ -57,6 +58,31 @@ int bindLoopback(httplib::Server& server, int port) {
                     "choose another, or 0 for any"});
 }
 
+/// A server at work on a thread of its own, from its start to this object's end.
+class Listening {
+ public:
+  explicit Listening(httplib::Server& server) : server_(server), thread_([this] { run(); }) {
+    // A server that is not running yet would not hear stop().
+    while (!server_.is_running() && !ended_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  ~Listening() {
+    server_.stop();
+    thread_.join();
+  }
+  Listening(const Listening&) = delete;
+  Listening& operator=(const Listening&) = delete;
+
+ private:
+  void run() {
+    server_.listen_after_bind();
+    ended_ = true;
+  }
+
+  httplib::Server& server_;
+  std::atomic<bool> ended_ = false;
+  std::thread thread_;  // starts when all else is there
+};
+
 }  // namespace
 
 void serveViewer(const Package& package, int port, const std::function<void(int port)>& started, Progress& progress) {
@@ -80,7 +106,7 @@ void serveViewer(const Package& package, int port, const std::function<void(int 
                               {"Content-Security-Policy",
                                "default-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; base-uri 'none'"}});
   const int bound = bindLoopback(server, port);
-  std::thread listening([&server] { server.listen_after_bind(); });
+  const Listening listening(server);
   started(bound);
   try {
     while (true) {
@@ -89,8 +115,6 @@ void serveViewer(const Package& package, int port, const std::function<void(int 
     }
   } catch (const Cancelled&) {  // how a server ends
   }
-  server.stop();
-  listening.join();
 }
 
 }  // namespace facezip::cli

@@ -272,6 +272,24 @@ TEST_F(Command, EvaluateDrawsThePicture) {
   EXPECT_EQ(runFacezip(command + " --picture /proc/facezip/errors.png").exit_code, cli::kExitOutput);
 }
 
+TEST_F(Command, ReportShowsTexturesOfATexelsHeight) {
+  const test::TemporaryDirectory out;
+  test::writeSmallCapture(out / "capture", {.expressions = 2, .width = 2000, .height = 3});
+  ASSERT_EQ(runFacezip("compress " + quoted(out / "capture") + " -o " + quoted(out / "p") + " --unit m").exit_code, 0);
+  const test::CommandResult result =
+      runFacezip("report " + quoted(out / "capture") + " " + quoted(out / "p") + " -o " + quoted(out / "page.html"));
+  EXPECT_EQ(result.exit_code, cli::kExitSuccess) << result.error;
+}
+
+TEST_F(Command, ViewEndsWheneverItIsAskedTo) {
+  for (int milliseconds = 2; milliseconds <= 24; milliseconds += 2) {
+    const test::CommandResult result = runFacezip(
+        "view " + quoted(package()) + " --port 0",
+        "timeout --kill-after=5 0.0" + std::string(milliseconds < 10 ? "0" : "") + std::to_string(milliseconds));
+    EXPECT_EQ(result.exit_code, 124) << "killed when asked after " << milliseconds << " ms";
+  }
+}
+
 TEST_F(Command, InfoDevicesVersionAndHelp) {
   const std::string info = runFacezip("info " + quoted(package())).out;
   EXPECT_THAT(info, HasSubstr("6 expressions, 4 difference textures"));

@@ -70,28 +70,31 @@ float sampleOf(const image::Image& picture, std::size_t index) {
   return reinterpret_cast<const float*>(picture.samples.data())[index];
 }
 
-/// The image at no more than kLargestThumbnail a side: means of whole texels. Opaque: four channels become three.
+/// The image at no more than kLargestThumbnail a side: means of step x step texels, of fewer where a side is shorter
+/// than that. Opaque: four channels become three.
 image::Image thumbnail(const fs::path& file) {
   const image::Image picture = image::readImage(file);
   const image::ImageShape& shape = picture.shape;
   const int step = (std::max(shape.width, shape.height) - 1) / kLargestThumbnail + 1;
   const int width = std::max(1, shape.width / step);
   const int height = std::max(1, shape.height / step);
+  const int rows = std::min(step, shape.height);
+  const int columns = std::min(step, shape.width);
   const int channels = shape.channels < 3 ? 1 : 3;
   std::vector<float> values;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       for (int c = 0; c < channels; ++c) {
         float sum = 0.0f;
-        for (int row = y * step; row < (y + 1) * step; ++row) {
-          for (int column = x * step; column < (x + 1) * step; ++column) {
+        for (int row = y * step; row < y * step + rows; ++row) {
+          for (int column = x * step; column < x * step + columns; ++column) {
             sum += sampleOf(picture, (static_cast<std::size_t>(row) * static_cast<std::size_t>(shape.width) +
                                       static_cast<std::size_t>(column)) *
                                              static_cast<std::size_t>(shape.channels) +
                                          static_cast<std::size_t>(c));
           }
         }
-        values.push_back(sum / static_cast<float>(step * step));
+        values.push_back(sum / static_cast<float>(rows * columns));
       }
     }
   }

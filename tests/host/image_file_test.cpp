@@ -1,5 +1,6 @@
 #include "image/image_file.hpp"
 
+#include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -203,11 +204,52 @@ TEST(ImageReader, NaNNamesRowAndColumn) {
   }
 }
 
+TEST(ImageReader, FloatsThatWouldOverflowAreInputErrors) {
+  const test::TemporaryDirectory folder;
+  image::Image image = ramp(8, 4, 1, image::SampleType::kFloat32);
+  reinterpret_cast<float*>(image.samples.data())[9] = 1e6f;
+  image::writeImage(folder / "a.exr", image);
+  EXPECT_EQ(image::readImage(folder / "a.exr").samples, image.samples);
+  reinterpret_cast<float*>(image.samples.data())[9] = -1.1e6f;
+  image::writeImage(folder / "a.exr", image);
+  EXPECT_THROW(image::readImage(folder / "a.exr"), InputError);
+}
+
+TEST(ImageReader, CroppedDataWindowsAreInputErrors) {
+  const test::TemporaryDirectory folder;
+  OIIO::ImageSpec spec(8, 4, 1, OIIO::TypeDesc::FLOAT);
+  const std::vector<float> samples(32, 0.5f);
+  for (const bool cropped : {false, true}) {
+    spec.x = cropped ? 2 : 0;
+    spec.full_width = cropped ? 10 : 8;
+    const auto output = OIIO::ImageOutput::create("a.exr");
+    ASSERT_TRUE(output->open((folder / "a.exr").string(), spec));
+    ASSERT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, samples.data()));
+    ASSERT_TRUE(output->close());
+    if (cropped) {
+      EXPECT_THROW(image::ImageReader reader(folder / "a.exr"), InputError);
+    } else {
+      EXPECT_EQ(image::readImage(folder / "a.exr").shape.width, 8);
+    }
+  }
+}
+
 TEST(ImageReader, MissingAndForeignFilesAreInputErrors) {
   const test::TemporaryDirectory folder;
   EXPECT_THROW(image::ImageReader(folder / "missing.png"), InputError);
   std::filesystem::copy_file("/proc/self/cmdline", folder / "text.png");
   EXPECT_THROW(image::ImageReader(folder / "text.png"), InputError);
+}
+
+TEST(ImageWriter, FormatsThatWouldLoseSamplesAreRefused) {
+  const test::TemporaryDirectory folder;
+  for (const char* name : {"a.png", "a.jpg", "a.bmp"}) {
+    EXPECT_THROW(image::writeImage(folder / name, ramp(8, 4, 3, image::SampleType::kFloat32)), InputError) << name;
+    EXPECT_FALSE(std::filesystem::exists(folder / name)) << name;
+  }
+  EXPECT_THROW(image::writeImage(folder / "a.jpg", ramp(8, 4, 3, image::SampleType::kUint16)), InputError);
+  EXPECT_NO_THROW(image::writeImage(folder / "a.jpg", ramp(8, 4, 3, image::SampleType::kUint8)));
+  EXPECT_NO_THROW(image::writeImage(folder / "a.exr", ramp(8, 4, 3, image::SampleType::kUint8)));
 }
 
 TEST(ImageWriter, UnknownExtensionIsAnInputError) {

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <cassert>
+#include <cerrno>
 #include <cmath>
+#include <cstdio>
+#include <cstring>
 #include <utility>
 
 #include "facezip/error.hpp"
@@ -13,18 +16,33 @@ namespace facezip::image {
 namespace fs = std::filesystem;
 namespace {
 
-void requireFinite(const fs::path& path, const ImageShape& shape, int first_row, std::span<const std::byte> rows) {
+/// Differences are squared and summed in float, in units of 1/255: far beyond this they overflow.
+constexpr float kLargestSample = 1e6f;
+
+void requireSaneFloats(const fs::path& path, const ImageShape& shape, int first_row, std::span<const std::byte> rows) {
   const std::size_t count = rows.size() / sizeof(float);
   const auto* samples = reinterpret_cast<const float*>(rows.data());
   for (std::size_t i = 0; i < count; ++i) {
-    if (std::isfinite(samples[i])) continue;
+    if (std::abs(samples[i]) <= kLargestSample) continue;
     const std::size_t texel = i / static_cast<std::size_t>(shape.channels);
     const std::size_t width = static_cast<std::size_t>(shape.width);
     throw InputError(
         {path.string(),
          fmt::format("row {}, column {}", static_cast<std::size_t>(first_row) + texel / width, texel % width),
-         "finite samples", std::isnan(samples[i]) ? "NaN" : "infinity", "repair the image"});
+         fmt::format("samples of at most {:g} either way", kLargestSample),
+         std::isnan(samples[i]) ? "NaN" : fmt::format("{:g}", samples[i]), "repair the image"});
   }
+}
+
+/// Each texture of a capture stays open, so that files may run out: that is no fault of the image.
+void requireReadable(const fs::path& path) {
+  if (std::FILE* file = std::fopen(path.c_str(), "rb")) {
+    std::fclose(file);
+    return;
+  }
+  if (errno == ENOENT) throw InputError({path.string(), "", "an image", "no such file", ""});
+  throw InputError({path.string(), "", "an image that can be opened", std::strerror(errno),
+                    errno == EMFILE ? "allow more open files (ulimit -n)" : ""});
 }
 
 }  // namespace
@@ -34,8 +52,7 @@ std::string sampleTypeName(SampleType type) {
 }
 
 ImageReader::ImageReader(fs::path path) : path_(std::move(path)) {
-  std::error_code error;
-  if (!fs::exists(path_, error)) throw InputError({path_.string(), "", "an image", "no such file", ""});
+  requireReadable(path_);
   input_ = openPng(path_);
   if (!input_) input_ = anyFormat().open(path_);
   shape_ = input_->shape();
@@ -50,7 +67,7 @@ void ImageReader::readRows(int begin, int end, std::span<std::byte> out) {
   assert(out.size() == static_cast<std::size_t>(end - begin) * shape_.rowBytes());
   if (begin == end) return;
   input_->readRows(begin, end, out);
-  if (shape_.type == SampleType::kFloat32) requireFinite(path_, shape_, begin, out);
+  if (shape_.type == SampleType::kFloat32) requireSaneFloats(path_, shape_, begin, out);
 }
 
 ImageWriter::ImageWriter(const fs::path& path, const ImageShape& shape, const std::string& colour_space)

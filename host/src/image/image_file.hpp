@@ -54,7 +54,7 @@ class ImageReader {
 
   /// Reads rows [begin, end) into `out` (row-major, channels interleaved, exactly (end - begin) * rowBytes()).
   /// Bands in rising order are read once; going back re-reads compressed files from their start.
-  /// Throws InputError on a truncated or corrupt file, and on NaN or infinity in float images.
+  /// Throws InputError on a truncated or corrupt file, and on NaN, infinity or samples beyond 1e6 in float images.
   void readRows(int begin, int end, std::span<std::byte> out);
 
  private:

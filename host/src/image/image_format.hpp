@@ -35,8 +35,8 @@ class SampleOutput {
 /// interlaced. Null for every other file, which is left to anyFormat().
 std::unique_ptr<SampleInput> openPng(const std::filesystem::path& path);
 
-/// Creates a PNG file. Null for what PNG cannot hold (floats) and names that do not end in .png.
-/// Throws OutputError.
+/// Creates a PNG file. Null for names that do not end in .png.
+/// Throws InputError for what PNG cannot hold (floats), OutputError.
 std::unique_ptr<SampleOutput> createPng(const std::filesystem::path& path, const ImageShape& shape,
                                         const std::string& colour_space);
 

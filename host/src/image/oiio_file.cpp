@@ -64,6 +64,15 @@ class OiioInput : public SampleInput {
     if (spec.depth > 1 || spec.deep) {
       throw InputError({path_.string(), "", "a flat two-dimensional image", "a volume or deep image", ""});
     }
+    // A cropped image would lie beside its neutral.
+    if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
+        spec.height != spec.full_height) {
+      throw InputError({path_.string(), "data window",
+                        fmt::format("the whole display window, {} x {} from ({}, {})", spec.full_width,
+                                    spec.full_height, spec.full_x, spec.full_y),
+                        fmt::format("{} x {} from ({}, {})", spec.width, spec.height, spec.x, spec.y),
+                        "export it without cropping"});
+    }
   }
 
   ImageShape shape() const override { return shape_; }
@@ -113,6 +122,19 @@ class OiioInput : public SampleInput {
   int tile_rows_end_ = 0;
 };
 
+/// True if samples of `type` lose nothing in a file of `format`.
+bool holds(const OIIO::TypeDesc& format, SampleType type) {
+  switch (type) {
+    case SampleType::kUint8:
+      return true;
+    case SampleType::kUint16:
+      return format == OIIO::TypeDesc::UINT16 || format == OIIO::TypeDesc::UINT32 || format == OIIO::TypeDesc::FLOAT;
+    case SampleType::kFloat32:
+      break;
+  }
+  return format == OIIO::TypeDesc::FLOAT || format == OIIO::TypeDesc::DOUBLE;
+}
+
 class OiioOutput : public SampleOutput {
  public:
   OiioOutput(const fs::path& path, const ImageShape& shape, const std::string& colour_space)
@@ -128,6 +150,18 @@ class OiioOutput : public SampleOutput {
     if (path_.extension() == ".exr") spec.attribute("DateTime", "1970:01:01 00:00:00");
     errno = 0;
     if (!file_->open(path_.string(), spec)) throw OutputError(path_, reason(file_->geterror()));
+    // OpenImageIO takes what comes nearest without a word.
+    const OIIO::ImageSpec& opened = file_->spec();
+    if (holds(opened.format, shape.type) && opened.nchannels == shape.channels) return;
+    const std::string got =
+        fmt::format("\"{}\": {} channels of {}", path_.extension().string(), opened.nchannels, opened.format.c_str());
+    file_.reset();
+    std::error_code ignored;
+    fs::remove(path_, ignored);
+    throw InputError(
+        {path_.string(), "",
+         fmt::format("a format for {} channel{} of {}", shape.channels, shape.channels == 1 ? "" : "s", type_.c_str()),
+         got, "use .exr or .tif"});
   }
 
   void writeRows(int first_row, int row_count, std::span<const std::byte> rows) override {

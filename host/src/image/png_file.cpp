@@ -119,8 +119,8 @@ class PngOutput : public SampleOutput {
                      SPNG_INTERLACE_NONE};
     check(spng_set_png_file(context_.get(), file_.get()));
     check(spng_set_ihdr(context_.get(), &header));
-    // Of photographic data, run lengths of differences from the mean of the texels to the left and above take a third of
-    // the default's time and fewer bytes.
+    // Of photographic data, run lengths of differences from the mean of the texels to the left and above take a third
+    // of the default's time and fewer bytes.
     check(spng_set_option(context_.get(), SPNG_IMG_COMPRESSION_STRATEGY, Z_RLE));
     check(spng_set_option(context_.get(), SPNG_FILTER_CHOICE, SPNG_FILTER_CHOICE_AVG));
     setColourSpace(colour_space);
@@ -170,8 +170,13 @@ std::unique_ptr<SampleInput> openPng(const fs::path& path) {
 
 std::unique_ptr<SampleOutput> createPng(const fs::path& path, const ImageShape& shape,
                                         const std::string& colour_space) {
-  const bool fits = shape.type != SampleType::kFloat32 && 1 <= shape.channels && shape.channels <= 4;
-  if (!fits || path.extension() != ".png") return nullptr;
+  if (path.extension() != ".png") return nullptr;
+  if (shape.type == SampleType::kFloat32 || shape.channels < 1 || shape.channels > 4) {
+    throw InputError({path.string(), "",
+                      fmt::format("a format for {} channel{} of {} samples", shape.channels,
+                                  shape.channels == 1 ? "" : "s", sampleTypeName(shape.type)),
+                      "PNG, for 1 to 4 channels of 8 or 16 bits", "use .exr or .tif"});
+  }
   return std::make_unique<PngOutput>(path, shape, colour_space);
 }
 

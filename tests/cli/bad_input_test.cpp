@@ -56,6 +56,11 @@ class BadInput : public testing::Test {
   const test::TemporaryDirectory folder_;
 };
 
+TEST_F(BadInput, MemoryThatAWindowOfTheWeightsWouldExceed) {
+  expectFailure(cli::kExitInput, {"--memory", "at least", "--weight-scale of 4, 8, 16 or 32"},
+                std::string(kOptions) + " --weight-scale 63 --memory 260MiB");
+}
+
 TEST_F(BadInput, GoodInputIsTaken) { EXPECT_EQ(compress().exit_code, cli::kExitSuccess); }
 
 TEST_F(BadInput, MissingNeutralTexture) {

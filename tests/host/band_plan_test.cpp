@@ -48,6 +48,20 @@ TEST(BandPlan, SaysHowMuchMemoryIsNeeded) {
   }
 }
 
+TEST(BandPlan, RowsBesideAndStepsCount) {
+  compress::BandCost cost = costOf(2048, 20);
+  const DeviceInfo device = deviceWith(8 * kGiB, 2 * kGiB);
+  cost.row_step = 1008;
+  cost.rows_beside = 128;
+  const std::uint64_t needed = (256u << 20) + cost.per_row * (1008 + 128);
+  EXPECT_EQ(compress::planBandRows(cost, 2048, needed, 0, device), 1008);
+  EXPECT_THROW(compress::planBandRows(cost, 2048, needed - 1, 0, device), InputError);
+  EXPECT_EQ(compress::planBandRows(cost, 100, needed, 0, device), 1008);
+  const std::uint64_t buffer = cost.largest_buffer_per_row * (1008 + 128);
+  EXPECT_NO_THROW(compress::planBandRows(cost, 2048, needed, 0, deviceWith(8 * kGiB, buffer)));
+  EXPECT_THROW(compress::planBandRows(cost, 2048, needed, 0, deviceWith(8 * kGiB, buffer - 1)), DeviceError);
+}
+
 TEST(BandPlan, RefusesADeviceWithoutRoomForABand) {
   EXPECT_THROW(compress::planBandRows(costOf(8192, 100), 8192, 8 * kGiB, 0, deviceWith(64u << 20, 16u << 20)),
                DeviceError);

@@ -109,7 +109,12 @@ TextureRows::TextureRows(device::DeviceContext& context, TextureShape shape, int
   clang_builtins_ = context.clangBuiltins(variant);
   textures_ = context.allocate(most_rows_ / kTileRows * shape_.tilesBytes(), CL_MEM_READ_ONLY, "the textures of a map");
   encoding_ = context.upload(encodingOf(shape_, quadPlanes()), "the encoding of difference textures");
-  output(FrameForm::kSamples);
+  // Frames take no memory of their own, not even the first.
+  output(FrameForm::kSamples).frame = allocateFrame(FrameForm::kSamples);
+}
+
+cl::Buffer TextureRows::allocateFrame(FrameForm form) const {
+  return context_.allocate(most_rows_ * paddedRowBytes(form), CL_MEM_WRITE_ONLY | CL_MEM_ALLOC_HOST_PTR, "a frame");
 }
 
 int TextureRows::quadPlanes() const {
@@ -215,9 +220,7 @@ void TextureRows::blendInto(const cl::Buffer& weights, std::span<std::byte> out,
     }
     cl::Buffer& frame = output(form).frame;
     const std::size_t padded = paddedRowBytes(form);
-    if (frame() == nullptr) {
-      frame = context_.allocate(most_rows_ * padded, CL_MEM_WRITE_ONLY | CL_MEM_ALLOC_HOST_PTR, "a frame");
-    }
+    if (frame() == nullptr) frame = allocateFrame(form);
     enqueue(weights, frame, form);
     const void* mapped = context_.queue().enqueueMapBuffer(frame, CL_TRUE, CL_MAP_READ, 0, frameBytes(form));
     for (int row = 0; row < end_ - begin_; ++row) {

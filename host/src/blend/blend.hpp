@@ -85,12 +85,13 @@ class TextureRows {
   struct Output {
     cl::Kernel kernel;
     std::size_t local_size = 0;
-    cl::Buffer frame;  // made when a frame is first copied out
+    cl::Buffer frame;  // that is copied out
   };
 
   int tileRowCount() const { return (end_ - begin_ + kTileRows - 1) / kTileRows; }
   std::size_t frameSampleBytes(FrameForm form) const;
   Output& output(FrameForm form);
+  cl::Buffer allocateFrame(FrameForm form) const;
   /// Planes of codes, of a channel and a difference each, that are stored in quads (kernels/cl/blend.cl).
   int quadPlanes() const;
   bool fitsFrame(std::span<const std::byte> out, FrameForm form) const;

@@ -59,26 +59,31 @@ BandCost bandCost(const BandShape& shape, int textures, int mask_count) {
 
 int planBandRows(const BandCost& cost, int height, std::uint64_t memory_bytes, std::uint64_t resident_bytes,
                  const DeviceInfo& device) {
-  const std::uint64_t smallest_band = cost.per_row * kTileSide;
-  const std::uint64_t beside = kProcessBytes + resident_bytes;
+  const auto step = static_cast<std::uint64_t>(cost.row_step);
+  const auto rows_beside = static_cast<std::uint64_t>(cost.rows_beside);
+  const std::uint64_t smallest_band = cost.per_row * step;
+  const std::uint64_t beside = kProcessBytes + resident_bytes + cost.per_row * rows_beside;
   if (memory_bytes < beside + smallest_band) {
     throw InputError({"--memory", "", fmt::format("at least {} for this capture", mebibytes(beside + smallest_band)),
-                      mebibytes(memory_bytes), "raise it, or compress fewer maps at a time"});
+                      mebibytes(memory_bytes),
+                      fmt::format("raise it, or compress fewer maps at a time{}",
+                                  cost.row_step > kTileSide ? ", or take a --weight-scale of 4, 8, 16 or 32" : "")});
   }
-  const std::uint64_t largest_buffer = cost.largest_buffer_per_row * kTileSide;
+  const std::uint64_t largest_buffer = cost.largest_buffer_per_row * (step + rows_beside);
   if (largest_buffer > device.largest_allocation_bytes || smallest_band > device.global_memory_bytes) {
     throw DeviceError(
-        "a band of 16 rows", 0,
+        fmt::format("a band of {} rows", step), 0,
         fmt::format("needs {} in all and {} in one buffer; {} has {} and allows {}; choose another --device",
                     mebibytes(smallest_band), mebibytes(largest_buffer), device.name,
                     mebibytes(device.global_memory_bytes), mebibytes(device.largest_allocation_bytes)));
   }
   const std::uint64_t within_memory = (memory_bytes - beside) / cost.per_row;
-  const std::uint64_t within_device = std::min(device.global_memory_bytes / 2 / cost.per_row,
-                                               device.largest_allocation_bytes / cost.largest_buffer_per_row);
+  const std::uint64_t within_device =
+      std::min(device.global_memory_bytes / 2 / cost.per_row,
+               device.largest_allocation_bytes / cost.largest_buffer_per_row - rows_beside);
   const std::uint64_t rows = std::min({within_memory, within_device, cost.useful_bytes / cost.per_row});
-  const auto needed = static_cast<std::uint64_t>((height + kTileSide - 1) / kTileSide * kTileSide);
-  return static_cast<int>(std::clamp<std::uint64_t>(rows / kTileSide * kTileSide, kTileSide, needed));
+  const auto needed = (static_cast<std::uint64_t>(height) + step - 1) / step * step;
+  return static_cast<int>(std::clamp<std::uint64_t>(rows / step * step, step, needed));
 }
 
 int planWindowRows(std::span<OpenMap* const> maps, const WeightSpace& space, bool half_cells,
@@ -97,11 +102,16 @@ int planWindowRows(std::span<OpenMap* const> maps, const WeightSpace& space, boo
     cost.largest_buffer_per_row =
         std::max(cost.largest_buffer_per_row, one.largest_buffer_per_row * scale / finest_scale);
   }
-  if (half_cells) cost.per_row += HalfCells::bytesOfCellRow(space) / finest_scale;
-  const std::uint64_t halo = 2 * static_cast<std::uint64_t>(windowHalo(finest->weight_scale)) * cost.per_row;
-  const int rows = planBandRows(cost, finest->samples->shape().height, memory_bytes, resident_bytes + halo, device);
-  const int step = windowRowStep(maps);
-  return std::max(step, rows / finest->weight_scale / step * step);
+  if (half_cells) {
+    const std::uint64_t bytes = HalfCells::bytesOfCellRow(space) / finest_scale;
+    cost.per_row += bytes;
+    cost.largest_buffer_per_row = std::max(cost.largest_buffer_per_row, bytes);
+  }
+  // Windows begin at whole tiles of every map and whole cells: 1008 rows for a scale of 63, where 64 has 64.
+  cost.row_step = windowRowStep(maps) * finest->weight_scale;
+  cost.rows_beside = 2 * windowHalo(finest->weight_scale);
+  return planBandRows(cost, finest->samples->shape().height, memory_bytes, resident_bytes, device) /
+         finest->weight_scale;
 }
 
 }  // namespace facezip::compress

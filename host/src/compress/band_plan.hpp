@@ -17,6 +17,8 @@ struct BandCost {
   std::uint64_t largest_buffer_per_row = 0;  ///< of the buffers on the device
   /// Bands beyond this gain nothing: launches are already cheap beside the work, and caches grow cold.
   std::uint64_t useful_bytes = 96u << 20;
+  int row_step = 16;    ///< bands have a multiple of this many rows
+  int rows_beside = 0;  ///< that are held with a band besides its own
 };
 
 /// shape       of the map; its rows are ignored
@@ -24,10 +26,10 @@ struct BandCost {
 /// mask_count  K; a tile is taken to hold min(K, 16) of them, twice what 3 cm masks show on a head
 BandCost bandCost(const BandShape& shape, int textures, int mask_count);
 
-/// Rows of a band: a multiple of 16, at least 16, at most what the whole image needs.
+/// Rows of a band: a multiple of cost.row_step, at least that, at most what the whole image needs.
 /// memory_bytes   what the process may keep resident in all
 /// resident_bytes what it keeps beside the bands (weight maps, meshes; the libraries' own is added here)
-/// Throws InputError if `memory_bytes` does not hold a band of 16 rows, DeviceError if the device does not.
+/// Throws InputError if `memory_bytes` does not hold the smallest band, DeviceError if the device does not.
 int planBandRows(const BandCost& cost, int height, std::uint64_t memory_bytes, std::uint64_t resident_bytes,
                  const DeviceInfo& device);
 

@@ -34,7 +34,7 @@ double CompressionState::coveredTexels(const OpenMap& map) const {
 }
 
 /// What stays from pass to pass: weights of every set as codes, at the start and as written, one as halves while it
-/// is refined, the masks of the cells, and the classes of the texels of each raster.
+/// is refined, the masks of the cells, the Gram matrices, and the classes of the texels of each raster.
 std::uint64_t CompressionState::residentBytes() const {
   constexpr std::uint64_t kMasksOfACell = 8;
   const WeightSpace space = weightSpace();
@@ -44,7 +44,7 @@ std::uint64_t CompressionState::residentBytes() const {
   for (const OpenMap& map : maps.maps) {
     if (classes.insert(map.classes.get()).second) class_bytes += map.classes->bytes();
   }
-  return class_bytes +
+  return class_bytes + gram_slots.bytes(expressions()) * groups.size() +
          cells * (static_cast<std::uint64_t>(expressions() * options.differences * (2 * weightSets() + 2)) +
                   kMasksOfACell * (sizeof(int) + sizeof(float)) + sizeof(int));
 }

@@ -16,6 +16,7 @@
 #include "compress/face_guides.hpp"
 #include "compress/importance.hpp"
 #include "compress/rate/rate_search.hpp"
+#include "compress/search/gram_matrices.hpp"
 #include "compress/stage_clock.hpp"
 #include "compress/texture_source.hpp"
 #include "compress/weight_group.hpp"
@@ -61,6 +62,7 @@ struct CompressionState {
   std::vector<Eigen::MatrixX3f> expression_meshes;  ///< N, some of 0 rows; empty where they are not kept
   FaceMasks masks;
   std::unique_ptr<raster::TexelMasks> texel_masks;
+  GramSlots gram_slots;
   MapSet maps;
   raster::WeightGrid grid;
   MaskGuides guides;

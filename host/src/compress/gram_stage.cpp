@@ -22,10 +22,9 @@ void lookAgain(CompressionState& state) {
 }  // namespace
 
 void accumulateGrams(CompressionState& state) {
-  const GramSlots slots{state.report.masks, state.texel_masks->overlappingPairs()};
   state.covered_texels.assign(state.maps.maps.size(), 0);
   for (WeightGroup& group : state.groups) {
-    GramAccumulator accumulator(state.context, slots, state.expressions());
+    GramAccumulator accumulator(state.context, state.gram_slots, state.expressions());
     for (OpenMap* map : group.maps) {
       std::uint64_t covered = 0;
       const auto make_tiles = [&](int begin, int end) {
@@ -45,7 +44,7 @@ void accumulateGrams(CompressionState& state) {
   }
   if (state.rates) lookAgain(state);
   state.report.covered_texels = state.covered_texels.front();
-  state.report.overlapping_pairs = static_cast<int>(slots.pairs.size());
+  state.report.overlapping_pairs = static_cast<int>(state.gram_slots.pairs.size());
   state.clock.book("Gram matrices");
 }
 

@@ -57,6 +57,7 @@ void readGeometry(CompressionState& state) {
   state.report.cut_mass_max = state.masks.masks.cost.largest_removed;
   state.report.active_masks_mean = state.masks.masks.cost.mean_active_after;
   state.texel_masks = std::make_unique<raster::TexelMasks>(state.face.mesh, state.masks.region, state.masks.masks);
+  state.gram_slots = {state.report.masks, state.texel_masks->overlappingPairs()};
   state.clock.book("masks");
 }
 
@@ -75,6 +76,11 @@ void planBands(CompressionState& state) {
     assignWeightScales(state.maps, state.options.weight_scale);
   }
   state.report.band_rows = state.plannedBandRows();
+  // Too little memory is to be said before the work, not in its middle.
+  const auto method = state.options.method;
+  if (method == CompressOptions::Method::kRefined || method == CompressOptions::Method::kClosedLoop) {
+    for (const WeightGroup& group : state.groups) state.plannedWindowRows(group);
+  }
   state.clock.book("weight grid");
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "facezip/device.hpp"
 #include "facezip/error.hpp"
 
 namespace facezip::compress {
@@ -15,6 +16,8 @@ bool fitsMemory(const CompressionState& state) {
     for (const WeightGroup& group : state.groups) state.plannedWindowRows(group);
     return true;
   } catch (const InputError&) {
+    return false;
+  } catch (const DeviceError&) {
     return false;
   }
 }

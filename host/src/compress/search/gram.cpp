@@ -39,16 +39,19 @@ GramAccumulator::GramAccumulator(device::DeviceContext& context, GramSlots slots
       partial_(context, "partial sums of the Gram matrices"),
       reduced_(context, "sums of the Gram matrices") {
   assert(expressions >= 1);
-  const auto n = static_cast<std::size_t>(expressions);
-  sums_.values.assign(static_cast<std::size_t>(slots.count()) * n * n, 0.0);
   sums_.expressions = expressions;
   sums_.slots = std::move(slots);
+}
+
+void GramAccumulator::holdSums() {
+  if (sums_.values.empty()) sums_.values.resize(sums_.slots.bytes(sums_.expressions) / sizeof(double), 0.0);
 }
 
 void GramAccumulator::add(const DeviceTiles& tiles, const cl::Buffer& differences, const BandShape& shape,
                           double metric_weight) {
   assert(shape.expressions == sums_.expressions);
   if (tiles.tileCount() == 0) return;
+  holdSums();
   device::requireBytes(context_, differences, differenceBufferBytes(shape, tiles.tileCount()), "differences of a band");
   const std::size_t blocks = static_cast<std::size_t>(blockCount(sums_.expressions));
   const std::size_t most_rows = largest_partial_bytes_ / (kBlockBytes * std::min(blocks, kFewestBlocks));
@@ -135,8 +138,10 @@ void GramAccumulator::addSums(const GramPlan& plan, int first_block, int block_c
 }
 
 GramMatrices GramAccumulator::finish() {
-  GramMatrices result = sums_;
-  std::fill(sums_.values.begin(), sums_.values.end(), 0.0);
+  holdSums();
+  // Moved: the matrices of many masks and expressions are hundreds of MB.
+  GramMatrices result{sums_.slots, sums_.expressions, std::move(sums_.values)};
+  sums_.values.clear();
   return result;
 }
 

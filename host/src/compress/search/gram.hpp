@@ -44,6 +44,7 @@ class GramAccumulator {
   GramMatrices finish();
 
  private:
+  void holdSums();
   void uploadPlan(const GramPlan& plan);
   cl::Event runBlocks(const DeviceTiles& tiles, const cl::Buffer& differences, const BandShape& shape,
                       const GramPlan& plan, int first_block, int block_count);

@@ -25,6 +25,11 @@ struct GramSlots {
   int whole() const { return 0; }
   int mask(int k) const { return 1 + k; }
   int pair(int j) const { return 1 + masks + j; }
+  /// Of GramMatrices::values for N expressions.
+  std::size_t bytes(int expressions) const {
+    const auto n = static_cast<std::size_t>(expressions);
+    return static_cast<std::size_t>(count()) * n * n * sizeof(double);
+  }
 };
 
 /// One symmetric N x N matrix per slot, in units of (1/255)^2, summed over covered texels, channels and maps.

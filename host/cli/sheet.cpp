@@ -41,14 +41,19 @@ void Sheet::write(int x, int y, const std::string& text) {
 
 void Sheet::save(const fs::path& file) const {
   // The extension, which decides the format, stays last.
-  const fs::path partial = file.parent_path() / ("." + file.stem().string() + ".partial" + file.extension().string());
   std::error_code error;
-  if (file.has_parent_path()) fs::create_directories(file.parent_path(), error);  // else writing fails, and says why
+  if (fs::exists(file, error) && !fs::is_regular_file(file, error)) {
+    throw OutputError(file, "something that is no file is in the way", "choose another name");
+  }
+  const fs::path target = fs::weakly_canonical(file);  // what a link leads to
+  const fs::path partial =
+      target.parent_path() / ("." + target.stem().string() + ".partial" + target.extension().string());
+  fs::create_directories(target.parent_path(), error);  // else writing fails, and says why
   if (!image_.write(partial.string())) {
     fs::remove(partial, error);
     throw OutputError(file, image_.geterror());
   }
-  fs::rename(partial, file, error);
+  fs::rename(partial, target, error);
   if (error) throw OutputError(file, error.message());
 }
 

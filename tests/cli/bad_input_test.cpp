@@ -8,6 +8,7 @@
 
 #include "exit_codes.hpp"
 #include "facezip/geometry/obj_io.hpp"
+#include "file_contents.hpp"
 #include "io/staged_directory.hpp"
 #include "run_command.hpp"
 #include "small_capture.hpp"
@@ -59,6 +60,32 @@ class BadInput : public testing::Test {
 TEST_F(BadInput, MemoryThatAWindowOfTheWeightsWouldExceed) {
   expectFailure(cli::kExitInput, {"--memory", "at least", "--weight-scale of 4, 8, 16 or 32"},
                 std::string(kOptions) + " --weight-scale 63 --memory 260MiB");
+}
+
+TEST_F(BadInput, NothingThatIsNotAPackageIsReplaced) {
+  fs::create_directories(package() / "src");
+  io::writeTextFile(package() / "package.json", "{\"name\": \"a web page\"}");
+  io::writeTextFile(package() / "src/app.js", "precious");
+  expectFailure(cli::kExitOutput, {"no package.json of facezip's", "--output"});
+  fs::remove_all(package());
+  ASSERT_EQ(compress().exit_code, cli::kExitSuccess);
+  fs::rename(capture(), package() / "capture");
+  const test::CommandResult result =
+      runFacezip("compress " + quoted(package() / "capture") + " -o " + quoted(package()) + kOptions);
+  EXPECT_EQ(result.exit_code, cli::kExitOutput);
+  EXPECT_THAT(result.error, HasSubstr("which this command did not write"));
+  EXPECT_TRUE(fs::exists(package() / "capture/neutral.obj"));
+}
+
+TEST_F(BadInput, ReconstructReplacesNoCapturedTextures) {
+  ASSERT_EQ(compress().exit_code, cli::kExitSuccess);
+  for (const fs::path& output : {capture(), package()}) {
+    const auto files = test::filesOf(folder_.path());
+    const test::CommandResult result = runFacezip("reconstruct " + quoted(package()) + " --output " + quoted(output));
+    EXPECT_EQ(result.exit_code, cli::kExitOutput);
+    EXPECT_THAT(result.error, HasSubstr("not to be replaced"));
+    EXPECT_EQ(test::filesOf(folder_.path()), files);
+  }
 }
 
 TEST_F(BadInput, GoodInputIsTaken) { EXPECT_EQ(compress().exit_code, cli::kExitSuccess); }

@@ -9,6 +9,7 @@
 #include "file_contents.hpp"
 #include "image/image_file.hpp"
 #include "io/staged_directory.hpp"
+#include "package/footprint.hpp"
 #include "package/package_json.hpp"
 #include "sample_package.hpp"
 #include "temporary_directory.hpp"
@@ -106,7 +107,7 @@ TEST(PackageWriter, DescriptionComesLastAndAnUnfinishedPackageLeavesNothing) {
   const test::TemporaryDirectory folder;
   const SamplePackage sample = makeSample();
   {
-    io::StagedDirectory staged(folder / "package", io::StagedDirectory::Existing::kReplaceMarked, "package.json");
+    io::StagedDirectory staged(folder / "package", package::footprint());
     package::PackageWriter writer(sample.description, staged.path());
     writer.writeNeutralRows(0, sample.neutrals[0], 24);
     writer.writeWeights(0, sample.weights[0]);

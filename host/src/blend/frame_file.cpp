@@ -15,8 +15,9 @@ namespace facezip {
 namespace fs = std::filesystem;
 
 void writeFrame(const fs::path& file, const PackageMap& map, std::span<const std::byte> frame) {
-  const fs::path target = fs::absolute(file);
-  io::createDirectories(target.parent_path());
+  io::createDirectories(fs::absolute(file).parent_path());
+  const fs::path target = io::fileToReplace(file);
+  if (target.empty()) throw OutputError(file, "something that is no file is in the way", "choose another --output");
   // The extension stays last: it decides the format.
   const fs::path partial = target.parent_path() / fmt::format(".partial-{}-{}", ::getpid(), target.filename().string());
   std::error_code error;

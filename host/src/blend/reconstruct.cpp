@@ -11,6 +11,7 @@
 #include "image/image_file.hpp"
 #include "io/staged_directory.hpp"
 #include "package/package_files.hpp"
+#include "package/package_json.hpp"
 
 namespace facezip {
 namespace fs = std::filesystem;
@@ -77,12 +78,32 @@ std::size_t totalRows(const Package& package, std::size_t expressions) {
   return rows;
 }
 
+/// What is reconstructed has the names of captured textures, and may have those of a package's: it replaces neither.
+void requireNoCapture(const Package& package, const fs::path& output) {
+  std::vector<fs::path> signs = {"capture.json", "neutral.obj", package::kDescriptionFile};
+  for (const PackageMap& map : package.maps()) {
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator(output / map.name, error)) {
+      if (entry.path().stem() == "neutral") signs.push_back(fs::path(map.name) / entry.path().filename());
+    }
+  }
+  for (const fs::path& sign : signs) {
+    std::error_code error;
+    if (!fs::exists(output / sign, error)) continue;
+    throw OutputError(output,
+                      fmt::format("it holds \"{}\", as captures and packages do, whose textures are not to be replaced",
+                                  sign.string()),
+                      "choose another --output");
+  }
+}
+
 }  // namespace
 
 void reconstruct(const Package& package, const fs::path& output, std::span<const std::string> expressions,
                  const Device& device, Progress& progress) {
   const std::vector<int> chosen = chosenExpressions(package, expressions);
-  io::StagedDirectory staged(output, io::StagedDirectory::Existing::kMerge);
+  requireNoCapture(package, output);
+  io::StagedDirectory staged(output);
   progress.stage("reconstruct", totalRows(package, chosen.size()));
   const auto weights = blend::loadWeightMaps(package, device);
   std::size_t done = 0;

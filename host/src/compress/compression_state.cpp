@@ -8,6 +8,7 @@
 #include "compress/band_plan.hpp"
 #include "compress/compress_stretch.hpp"
 #include "compress/refine/refinement.hpp"
+#include "package/footprint.hpp"
 
 namespace facezip::compress {
 
@@ -18,7 +19,7 @@ CompressionState::CompressionState(const Capture& open_capture, const std::files
       options(wanted),
       context(device_context),
       progress(shown_progress),
-      staged(package, io::StagedDirectory::Existing::kReplaceMarked, "package.json"),
+      staged(package, package::footprint()),
       buffers(std::make_unique<BandBuffers>(context)) {
   if (options.method == CompressOptions::Method::kCompressStretch) options.differences = kCompressStretchMaps;
 }

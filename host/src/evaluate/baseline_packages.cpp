@@ -44,7 +44,7 @@ std::string methodKey(CompressOptions::Method method) {
 
 TemporaryPackage::TemporaryPackage(const Capture& capture, const CompressOptions& options, const std::string& label,
                                    const Device& device, Progress& progress)
-    : staged_(fs::temp_directory_path() / "facezip-baseline", io::StagedDirectory::Existing::kMerge) {
+    : staged_(fs::temp_directory_path() / "facezip-baseline") {
   LabelledProgress labelled(label, progress);
   report_ = compressCapture(capture, staged_.path() / "package", options, device, labelled);
   package_ = std::make_unique<Package>(Package::open(staged_.path() / "package"));

@@ -98,7 +98,7 @@ std::vector<std::string> exportPackage(const Package& package, const std::string
     throw InputError({package.directory().string(), "mesh", "a package with meshes", "none",
                       "compress the capture again, without --no-mesh"});
   }
-  io::StagedDirectory staged(output, io::StagedDirectory::Existing::kReplaceMarked, "scene.gltf");
+  io::StagedDirectory staged(output, {"scene.gltf", "\"generator\": \"facezip "});
   const Target& chosen = found->second;
   if (chosen.write != nullptr) {
     chosen.write(package, staged.path());

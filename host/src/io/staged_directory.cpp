@@ -3,8 +3,10 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <stdio.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -12,6 +14,7 @@
 #include <utility>
 
 #include "facezip/error.hpp"
+#include "io/read_file.hpp"
 
 namespace facezip::io {
 namespace fs = std::filesystem;
@@ -25,18 +28,44 @@ fs::path withoutTrailingSlash(fs::path path) {
   return path.has_filename() ? path : path.parent_path();
 }
 
-void requireReplaceable(const fs::path& target, StagedDirectory::Existing existing, const fs::path& marker) {
+/// What an engine writes beside a file or folder that it imports: x.png.meta beside x.png.
+bool isCompanion(const fs::path& file) {
+  const fs::path extension = file.extension();
+  return extension == ".meta" || extension == ".import" || extension == ".uid";
+}
+
+/// Calls visit(path from `directory`) for all that is no folder.
+template <typename Visit>
+void forEachFile(const fs::path& directory, const Visit& visit) {
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(directory)) {
+    if (entry.symlink_status().type() != fs::file_type::directory) {
+      visit(entry.path().lexically_relative(directory));
+    }
+  }
+}
+
+/// The directory that `target` is, or is a link to.
+fs::path directoryOf(const fs::path& target) {
+  if (target.empty()) throw OutputError("--output", "no directory is named");
+  const fs::path path = withoutTrailingSlash(fs::absolute(target));
   std::error_code error;
-  const fs::file_status status = fs::status(target, error);
-  if (!fs::exists(status)) return;
-  if (!fs::is_directory(status)) {
-    throw OutputError(target, "a file with that name is in the way", "choose another --output");
+  const fs::file_status status = fs::status(path, error);
+  if (fs::exists(status) && !fs::is_directory(status)) {
+    throw OutputError(path, "a file with that name is in the way", "choose another --output");
   }
-  if (existing == StagedDirectory::Existing::kMerge || fs::is_empty(target, error)) return;
-  if (!fs::exists(target / marker, error)) {
-    throw OutputError(target, fmt::format("the directory is not empty and holds no {}", marker.string()),
-                      "choose another --output");
-  }
+  if (!fs::is_symlink(fs::symlink_status(path, error))) return path;
+  if (!fs::exists(status)) throw OutputError(path, "the link leads nowhere", "choose another --output");
+  return fs::canonical(path);
+}
+
+void requireMarker(const fs::path& target, const Footprint& own) {
+  std::error_code error;
+  const bool marked = fs::is_regular_file(target / own.marker, error);
+  if (marked && readFile(target / own.marker, "a file of the output").find(own.signature) != std::string::npos) return;
+  throw OutputError(
+      target,
+      fmt::format("the directory is not empty and holds no {}{}", own.marker.string(), marked ? " of facezip's" : ""),
+      "choose another --output");
 }
 
 /// Swaps two directories in one step where the file system can, so that a reader never finds `target` missing.
@@ -46,16 +75,60 @@ bool exchange(const fs::path& a, const fs::path& b) {
 
 }  // namespace
 
-StagedDirectory::StagedDirectory(fs::path target, Existing existing, fs::path marker)
-    : target_(withoutTrailingSlash(fs::absolute(target))), existing_(existing) {
-  requireReplaceable(target_, existing, marker);
+StagedDirectory::StagedDirectory(fs::path target, Footprint own) : target_(directoryOf(target)), own_(std::move(own)) {
+  std::error_code error;
+  if (fs::exists(target_, error) && !fs::is_empty(target_, error)) {
+    requireMarker(target_, *own_);
+    if (own_->files) {
+      own_files_ = own_->files(target_);
+      requireNoStrangers();
+    }
+  }
+  makeStaging();
+}
+
+StagedDirectory::StagedDirectory(fs::path target) : target_(directoryOf(target)) { makeStaging(); }
+
+void StagedDirectory::makeStaging() {
   createDirectories(target_.parent_path());
-  std::string pattern = (target_.parent_path() / ("." + target_.filename().string() + ".partial-XXXXXX")).string();
-  if (::mkdtemp(pattern.data()) == nullptr) throw OutputError(target_, errnoText());
-  staging_ = pattern;
-  // mkdtemp makes the directory private; what is published gets the usual rights.
-  fs::permissions(staging_, fs::perms::owner_all | fs::perms::group_read | fs::perms::group_exec |
-                                fs::perms::others_read | fs::perms::others_exec);
+  // Not mkdtemp(), which makes directories private: this one is published.
+  for (int attempt = 0; staging_.empty(); ++attempt) {
+    const std::string name = fmt::format(".{}.partial-{}-{}", target_.filename().string(), ::getpid(), attempt);
+    if (::mkdir((target_.parent_path() / name).c_str(), 0777) == 0) {
+      staging_ = target_.parent_path() / name;
+    } else if (errno != EEXIST) {
+      throw OutputError(target_, errnoText());
+    }
+  }
+}
+
+bool StagedDirectory::isOwn(const fs::path& relative) const {
+  if (own_->files) {
+    const auto within = [](const fs::path& inner, const fs::path& outer) {
+      return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
+    };
+    // The folders on the way to a file of ours are ours; so is all that lies in a folder that is named itself.
+    return std::any_of(own_files_.begin(), own_files_.end(),
+                       [&](const fs::path& own) { return within(own, relative) || within(relative, own); });
+  }
+  return fs::exists(fs::symlink_status(staging_ / *relative.begin()));
+}
+
+/// Throws OutputError when a file of the target is neither the program's nor a companion of one.
+void StagedDirectory::requireNoStrangers() const {
+  forEachFile(target_, [&](const fs::path& file) {
+    if (isOwn(file) || (isCompanion(file) && isOwn(fs::path(file).replace_extension()))) return;
+    throw OutputError(target_, fmt::format("it holds \"{}\", which this command did not write", file.string()),
+                      "move that elsewhere, or choose another --output");
+  });
+}
+
+/// Copies the companions of what stays from the target.
+void StagedDirectory::keepCompanions() const {
+  forEachFile(target_, [&](const fs::path& file) {
+    if (!isCompanion(file) || !fs::exists(staging_ / fs::path(file).replace_extension())) return;
+    fs::copy_file(target_ / file, staging_ / file, fs::copy_options::skip_existing);
+  });
 }
 
 StagedDirectory::~StagedDirectory() {
@@ -72,17 +145,22 @@ void StagedDirectory::clear() {
 }
 
 void StagedDirectory::commit() {
-  if (existing_ == Existing::kMerge) {
-    mergeIntoTarget();
-  } else {
-    replaceTarget();
+  try {
+    if (own_) {
+      replaceTarget();
+    } else {
+      mergeIntoTarget();
+    }
+  } catch (const fs::filesystem_error& error) {
+    throw OutputError(target_, error.code().message());
   }
-  committed_ = true;
 }
 
 void StagedDirectory::replaceTarget() {
   std::error_code error;
   if (fs::exists(target_, error)) {
+    requireNoStrangers();
+    keepCompanions();
     if (exchange(staging_, target_)) return;  // the destructor removes the old directory, now under the staging name
     fs::remove_all(target_, error);
   }
@@ -119,14 +197,22 @@ void writeTextFile(const fs::path& path, const std::string& text) {
   if (!file) throw OutputError(path, errno != 0 ? errnoText() : "write failed");
 }
 
-void writeTextFileAtomically(const fs::path& path, const std::string& text) {
+fs::path fileToReplace(const fs::path& path) {
+  std::error_code error;
   const fs::path absolute = fs::absolute(path);
-  const fs::path partial =
-      absolute.parent_path() / fmt::format(".{}.partial-{}", absolute.filename().string(), ::getpid());
+  const fs::file_status status = fs::status(absolute, error);
+  if (fs::exists(status) && !fs::is_regular_file(status)) return {};
+  return fs::is_symlink(fs::symlink_status(absolute, error)) ? fs::weakly_canonical(absolute) : absolute;
+}
+
+void writeTextFileAtomically(const fs::path& path, const std::string& text) {
+  const fs::path target = fileToReplace(path);
+  if (target.empty()) return writeTextFile(path, text);  // /dev/stdout, a pipe; a directory says so itself
+  const fs::path partial = target.parent_path() / fmt::format(".{}.partial-{}", target.filename().string(), ::getpid());
   std::error_code error;
   try {
     writeTextFile(partial, text);
-    fs::rename(partial, absolute, error);
+    fs::rename(partial, target, error);
     if (error) throw OutputError(path, error.message());
   } catch (const OutputError& failure) {
     fs::remove(partial, error);

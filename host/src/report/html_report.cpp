@@ -27,7 +27,7 @@ constexpr int kLargestThumbnail = 512;
 /// Pictures as data URIs. PNG: what JPEG adds would be taken for what the package lost.
 class Pictures {
  public:
-  explicit Pictures(const fs::path& beside) : staged_(beside, io::StagedDirectory::Existing::kMerge) {}
+  explicit Pictures(const fs::path& beside) : staged_(beside) {}
 
   std::string uri(const image::Image& picture) const {
     const fs::path file = staged_.path() / "picture.png";

@@ -10,7 +10,7 @@
 
 #include "compress/stage_clock.hpp"
 #include "facezip/package.hpp"
-#include "io/staged_directory.hpp"
+#include "package/footprint.hpp"
 #include "rig/moving_head.hpp"
 #include "rig/rig_json.hpp"
 #include "rig/rig_meshes.hpp"
@@ -68,7 +68,7 @@ class Rigging {
         options_(options),
         device_(device),
         progress_(progress),
-        staged_(package, io::StagedDirectory::Existing::kReplaceMarked, "package.json") {}
+        staged_(package, package::footprint()) {}
 
   RigReport run() {
     read();

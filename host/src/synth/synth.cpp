@@ -178,7 +178,7 @@ void writeRigTemplate(const fs::path& folder, std::uint64_t seed, Progress& prog
 
 void synthesizeCapture(const fs::path& output, const SynthOptions& options, Progress& progress) {
   const std::vector<synth::MapFormat> formats = chosenFormats(options);
-  io::StagedDirectory staged(output, io::StagedDirectory::Existing::kReplaceMarked, kManifest);
+  io::StagedDirectory staged(output, {kManifest, "\"generator\": \"facezip synth\""});
   const synth::HeadShape shape(options.seed);
   const synth::HeadMesh head(shape);
   const std::vector<synth::Expression> expressions = synth::makeExpressions(options.expressions, options.seed);

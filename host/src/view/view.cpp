@@ -7,7 +7,7 @@
 #include "io/base64.hpp"
 #include "io/read_file.hpp"
 #include "io/staged_directory.hpp"
-#include "package/package_json.hpp"
+#include "package/footprint.hpp"
 #include "view/viewer_files.hpp"
 
 namespace facezip {
@@ -26,21 +26,10 @@ std::string pageOnDisk(std::string_view page) {
 
 const std::map<std::string_view, std::string_view>& viewerPage() { return view::embeddedViewerFiles(); }
 
-std::vector<std::string> packageFiles(const Package& package) {
-  const PackageDescription& description = package.description();
-  std::vector<std::string> files = {package::kDescriptionFile};
-  if (!description.mesh_file.empty()) files.push_back(description.mesh_file);
-  if (description.masks) files.push_back(description.masks->file);
-  for (const PackageWeights& set : description.weights) files.insert(files.end(), set.files.begin(), set.files.end());
-  for (const PackageMap& map : description.maps) {
-    files.push_back(map.neutral_file);
-    for (const PackageDifference& difference : map.differences) files.push_back(difference.file);
-  }
-  return files;
-}
+std::vector<std::string> packageFiles(const Package& package) { return package::filesOf(package.description()); }
 
 void writeViewer(const Package& package, const fs::path& output) {
-  io::StagedDirectory staged(output, io::StagedDirectory::Existing::kReplaceMarked, "viewer.js");
+  io::StagedDirectory staged(output, {"viewer.js", "facezip"});
   for (const auto& [name, text] : viewerPage()) {
     io::writeTextFile(staged.path() / name, name == "index.html" ? pageOnDisk(text) : std::string(text));
   }

@@ -37,6 +37,7 @@ void addCompressCommand(CLI::App& app, const CommonOptions& common) {
   command->callback([arguments, &common] {
     const CompressOptions options = parseCompressOptions(arguments->compress);
     TerminalProgress progress(common.quiet);
+    requireReportPlace(arguments->report);
     const CancelOnSignal cancel(progress);
     const Capture capture = openCapture(arguments->capture, arguments->maps);
     const Device device = openDevice(arguments->device, &progress);

@@ -84,6 +84,7 @@ void addEvaluateCommand(CLI::App& app, const CommonOptions& common) {
     options.picture_map = arguments->picture_map;
     options.memory_bytes = parseBytes("--memory", arguments->memory);
     TerminalProgress progress(common.quiet);
+    requireReportPlace(arguments->report);
     const CancelOnSignal cancel(progress);
     const Package package = Package::open(arguments->package);
     const Evaluation evaluation = evaluatePackage(openCapture(arguments->capture), package, options,

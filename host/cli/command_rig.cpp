@@ -88,6 +88,7 @@ void addRigCommand(CLI::App& app, const CommonOptions& common) {
                                                                            : TextureSolve::kLocal;
     if (damping->count() > 0) options.texture_damping = arguments->texture_damping;
     TerminalProgress progress(common.quiet);
+    requireReportPlace(arguments->report);
     const CancelOnSignal cancel(progress);
     const Capture capture = openCapture(arguments->capture, arguments->maps);
     const Device device = openDevice(arguments->device);

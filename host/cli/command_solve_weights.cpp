@@ -70,6 +70,7 @@ void addSolveWeightsCommand(CLI::App& app, const CommonOptions& common) {
       ->type_name("FILE");
   command->callback([arguments, &common] {
     TerminalProgress progress(common.quiet);
+    requireReportPlace(arguments->report);
     const CancelOnSignal cancel(progress);
     const SolvedClip clip = solveWeights(arguments->package, framesOf(arguments->meshes), arguments->options, progress);
     writeClip(arguments->output, clip);

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <exception>
@@ -81,6 +82,7 @@ int main(int argc, char** argv) {
   using namespace facezip::cli;
   holdStandardStreams();
   raiseLimitOfOpenFiles();
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of the write, which cleans up
   CLI::App app{
       "Compresses the textures of facial blendshapes into a neutral, a few difference textures and weight maps."};
   app.name("facezip");

@@ -11,6 +11,8 @@
 namespace facezip::cli {
 namespace {
 
+/// What asks a program to end: Ctrl-C, kill, a terminal that closes.
+constexpr int kEndings[] = {SIGINT, SIGTERM, SIGHUP};
 constexpr auto kRedrawInterval = std::chrono::milliseconds(100);
 std::atomic<Progress*> g_cancelled_by_signal = nullptr;
 
@@ -85,13 +87,16 @@ void TerminalProgress::note(std::string_view message) {
 
 CancelOnSignal::CancelOnSignal(Progress& progress) {
   g_cancelled_by_signal.store(&progress);
-  std::signal(SIGINT, onSignal);
-  std::signal(SIGTERM, onSignal);
+  for (const int signal : kEndings) {
+    const auto before = std::signal(signal, onSignal);
+    if (signal == SIGHUP && before == SIG_IGN) std::signal(signal, SIG_IGN);  // nohup
+  }
 }
 
 CancelOnSignal::~CancelOnSignal() {
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
+  for (const int signal : kEndings) {
+    if (std::signal(signal, SIG_DFL) == SIG_IGN) std::signal(signal, SIG_IGN);
+  }
   g_cancelled_by_signal.store(nullptr);
 }
 

@@ -88,6 +88,14 @@ TEST_F(BadInput, ReconstructReplacesNoCapturedTextures) {
   }
 }
 
+TEST_F(BadInput, AReportThatCannotBeWrittenIsRefusedBeforeTheWork) {
+  io::writeTextFile(folder_ / "file", "no folder");
+  for (const fs::path& report : {folder_ / "file/r.json", folder_.path()}) {
+    expectFailure(cli::kExitOutput, {"cannot write", "--report"},
+                  std::string(kOptions) + " --report " + quoted(report));
+  }
+}
+
 TEST_F(BadInput, GoodInputIsTaken) { EXPECT_EQ(compress().exit_code, cli::kExitSuccess); }
 
 TEST_F(BadInput, MissingNeutralTexture) {

@@ -281,6 +281,23 @@ TEST_F(Command, ReportShowsTexturesOfATexelsHeight) {
   EXPECT_EQ(result.exit_code, cli::kExitSuccess) << result.error;
 }
 
+TEST_F(Command, EndingsLeaveNothingBehind) {
+  const test::TemporaryDirectory out;
+  const std::string compress =
+      "compress " + quoted(capture()) + " -o " + quoted(out / "p") + " --unit m --mask-radius 5cm --restarts ";
+  for (const char* ending : {"INT", "TERM", "HUP"}) {
+    // The search takes minutes.
+    const test::CommandResult result =
+        runFacezip(compress + "10000000", "timeout --preserve-status -s " + std::string(ending) + " 0.5");
+    EXPECT_EQ(result.exit_code, cli::kExitCancelled) << ending << ": " << result.error;
+    EXPECT_TRUE(fs::is_empty(out.path())) << ending;
+  }
+  // A file that may not grow: 8 blocks of 512 bytes.
+  const test::CommandResult result = runFacezip(compress + "3", "sh -c 'ulimit -f 8; exec \"$0\" \"$@\"'");
+  EXPECT_EQ(result.exit_code, cli::kExitOutput) << result.error;
+  EXPECT_TRUE(fs::is_empty(out.path()));
+}
+
 TEST_F(Command, ViewEndsWheneverItIsAskedTo) {
   for (int milliseconds = 2; milliseconds <= 24; milliseconds += 2) {
     const test::CommandResult result = runFacezip(

@@ -27,6 +27,7 @@ Permutation choosePermutation(CompressionState& state, const SeamTables& tables)
   solver.solver = state.options.permutation_solver;
   solver.descent.restarts = state.options.restarts;
   solver.descent.seed = state.options.seed;
+  solver.descent.checkpoint = [&state] { state.progress.checkCancelled(); };
   const PermutationSolution found = solvePermutation(tables, solver);
   state.report.permutation_solver = found.by_descent ? "descent" : "message-passing";
   state.report.permutation_bound = found.bound;

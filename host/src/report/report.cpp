@@ -1,6 +1,12 @@
 #include "facezip/report.hpp"
 
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <cmath>
+#include <cstring>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
@@ -182,6 +188,17 @@ std::string toJson(const SolvedClip& clip) {
         {{"mean", residual.mean}, {"p99", residual.percentile_99}, {"max", residual.largest}});
   }
   return object.dump(2) + "\n";
+}
+
+void requireReportPlace(const std::filesystem::path& file) {
+  namespace fs = std::filesystem;
+  if (file.empty() || (fs::exists(file) && !fs::is_directory(file) && io::fileToReplace(file).empty())) return;
+  std::error_code error;
+  if (fs::is_directory(file, error)) throw OutputError(file, "a directory is in the way", "choose another --report");
+  fs::path folder = fs::absolute(file).parent_path();
+  while (!fs::exists(folder, error) && folder.has_relative_path()) folder = folder.parent_path();
+  if (::access((folder / ".").c_str(), W_OK | X_OK) == 0) return;
+  throw OutputError(file, fmt::format("{}: {}", folder.string(), std::strerror(errno)), "choose another --report");
 }
 
 void writeReport(const std::filesystem::path& file, const std::string& json_text) {

@@ -75,6 +75,7 @@ PermutationSearch searchPermutation(const SeamTables& tables, const PermutationS
   const CoordinateDescent descent(tables);
   std::vector<Restart> restarts(static_cast<std::size_t>(options.restarts));
   tbb::parallel_for(0, options.restarts, [&](int index) {
+    options.checkpoint();
     restarts[static_cast<std::size_t>(index)] = descend(tables, descent, options, index);
   });
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "compress/search/seam_cost.hpp"
@@ -27,6 +28,7 @@ struct PermutationSearchOptions {
   int restarts = 100;    ///< random starts, 1 or more; the paper takes 100
   int max_sweeps = 100;  ///< visits to all masks in one restart at most, 1 or more; the paper takes 10
   std::uint64_t seed = 1;
+  std::function<void()> checkpoint = [] {};  ///< called between steps, from any thread; what it throws ends the search
 };
 
 struct PermutationSearch {

@@ -37,10 +37,11 @@ class Incumbent {
     offerLocalMinimum(std::move(sigma));
   }
 
-  void offerGrown() {
+  void offerGrown(const std::function<void()>& checkpoint) {
     const int starts = growthStarts(tables_);
     std::vector<std::vector<int>> grown(static_cast<std::size_t>(starts));
     tbb::parallel_for(0, starts, [&](int start) {
+      checkpoint();
       auto& sigma = grown[static_cast<std::size_t>(start)];
       sigma = descent_.grow(start * tables_.masks / starts);
       descent_.descend(sigma);
@@ -72,11 +73,13 @@ std::vector<int> sigmaOf(const PermutationGroup& group, const std::vector<int>& 
 }
 
 /// Raises the bound and lowers the incumbent until they meet, the bound stands still or the iterations are used up.
-void passMessages(CycleRelaxation& relaxation, int max_iterations, Incumbent& incumbent, std::vector<double>& bounds) {
+void passMessages(CycleRelaxation& relaxation, const PermutationSolverOptions& options, Incumbent& incumbent,
+                  std::vector<double>& bounds) {
   // An iteration that closes less than this share of the gap is not worth its time: a hundred more would not halve it.
   constexpr double kStandsStill = 1e-3;
   constexpr double kClosed = 1e-9;
-  for (int iteration = 0; iteration < max_iterations; ++iteration) {
+  for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
+    options.descent.checkpoint();
     const double gap = incumbent.best().cost - bounds.back();
     if (gap <= kClosed * incumbent.best().cost) return;
     relaxation.iterate();
@@ -92,7 +95,7 @@ double bestBound(const SeamTables& tables, const PermutationSolverOptions& optio
   bounds = {pairwiseBound(tables)};
   if (tables.clusters > kMaxListedClusters) return bounds.back();
   CycleRelaxation relaxation(tables, maxTriangles(tables));
-  passMessages(relaxation, options.max_iterations, incumbent, bounds);
+  passMessages(relaxation, options, incumbent, bounds);
   const std::int64_t node_size = std::int64_t{tables.masks} * relaxation.group().order();
   const BranchAndBound search = branchAndBound(relaxation, incumbent.best().cost, options.branching_budget / node_size);
   if (!search.labels.empty()) incumbent.offer(sigmaOf(relaxation.group(), search.labels));
@@ -108,7 +111,7 @@ PermutationSolution solvePermutation(const SeamTables& tables, const Permutation
     descent = std::async(std::launch::async, [&] { return searchPermutation(tables, options.descent); });
   }
   Incumbent incumbent(tables);
-  incumbent.offerGrown();
+  incumbent.offerGrown(options.descent.checkpoint);
   solution.bound = bestBound(tables, options, incumbent, solution.bounds);
   if (descent.valid()) {
     solution.descent = descent.get();

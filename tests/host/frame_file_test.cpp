@@ -15,6 +15,12 @@ TEST(FramePattern, NumbersFrames) {
   EXPECT_EQ(FramePattern("100%.png", false, 1).file(0, "albedo"), "100%.png");
 }
 
+TEST(FramePattern, PassesOverPercentSignsThatBeginNone) {
+  EXPECT_EQ(FramePattern("50%/f_%04d.png", true, 1).file(7, "albedo"), "50%/f_0007.png");
+  EXPECT_EQ(FramePattern("%4d%%d.png", true, 1).file(7, "albedo"), "%4d%7.png");
+  EXPECT_EQ(FramePattern("%02d/%d.png", true, 1).file(7, "albedo"), "07/%d.png");
+}
+
 TEST(FramePattern, TellsMapsApart) {
   EXPECT_EQ(FramePattern("frame.png", false, 1).file(0, "albedo"), "frame.png");
   EXPECT_EQ(FramePattern("frame.png", false, 2).file(0, "normal"), "frame.normal.png");

@@ -25,6 +25,8 @@ class FramePattern {
   std::filesystem::path file(int frame, const std::string& map) const;
 
  private:
+  void findNumber();
+
   std::string pattern_;
   std::size_t number_begin_ = std::string::npos;
   std::size_t number_length_ = 0;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -34,20 +33,26 @@ void writeFrame(const fs::path& file, const PackageMap& map, std::span<const std
 }
 
 FramePattern::FramePattern(std::string pattern, bool numbered, std::size_t maps) : pattern_(std::move(pattern)) {
-  // "%d" or "%0Nd" with one digit N, as printf has it.
-  const std::size_t percent = pattern_.find('%');
-  const std::string_view rest = std::string_view(pattern_).substr(std::min(percent, pattern_.size()));
-  const bool padded = rest.size() >= 4 && rest[1] == '0' && rest[2] >= '1' && rest[2] <= '9' && rest[3] == 'd';
-  if (padded || rest.starts_with("%d")) {
-    number_begin_ = percent;
-    number_length_ = padded ? 4 : 2;
-    number_width_ = padded ? rest[2] - '0' : 0;
-  } else if (numbered) {
+  findNumber();
+  if (numbered && number_begin_ == std::string::npos) {
     throw InputError({"--output", "", "a pattern with the number of the frame, such as frames/%04d.png", pattern_, ""});
   }
   append_map_ = maps > 1 && pattern_.find("{map}") == std::string::npos;
   if (fs::path(pattern_).extension().empty()) {
     throw InputError({"--output", "", "a file name with an extension, such as frame.png", pattern_, ""});
+  }
+}
+
+/// The first "%d" or "%0Nd" with one digit N, as printf has it; folders may well be called "50%".
+void FramePattern::findNumber() {
+  for (std::size_t at = pattern_.find('%'); at != std::string::npos; at = pattern_.find('%', at + 1)) {
+    const std::string_view rest = std::string_view(pattern_).substr(at);
+    const bool padded = rest.size() >= 4 && rest[1] == '0' && rest[2] >= '1' && rest[2] <= '9' && rest[3] == 'd';
+    if (!padded && !rest.starts_with("%d")) continue;
+    number_begin_ = at;
+    number_length_ = padded ? 4 : 2;
+    number_width_ = padded ? rest[2] - '0' : 0;
+    return;
   }
 }
 

@@ -2,7 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "exit_codes.hpp"
+#include "facezip/view.hpp"
 #include "file_contents.hpp"
 #include "io/staged_directory.hpp"
 #include "run_command.hpp"
@@ -114,6 +117,23 @@ TEST_F(Export, SaysWhatAnEngineDoesNotGet) {
     EXPECT_EQ(exportTo("face", target, folder() / ("face_" + target + "_again")).error, "");
   }
   EXPECT_EQ(exportTo("deep", "gltf", folder() / "deep_gltf").error, "") << "a package is copied as it is";
+}
+
+TEST_F(Export, MapsMayShareFiles) {
+  const fs::path shared = folder() / "shared";
+  fs::copy(folder() / "face", shared, fs::copy_options::recursive);
+  nlohmann::json document = nlohmann::json::parse(contentsOf(shared / "package.json"));
+  document["maps"][1] = document["maps"][0];
+  document["maps"][1]["name"] = "detail";
+  io::writeTextFile(shared / "package.json", document.dump());
+  fs::remove_all(shared / "normal");
+  for (const auto& [target, files] : kFiles) {
+    const test::CommandResult result = exportTo("shared", target, folder() / ("shared_" + target));
+    EXPECT_EQ(result.exit_code, 0) << target << ": " << result.error;
+  }
+  EXPECT_TRUE(fs::exists(folder() / "shared_gltf/package/albedo/neutral.png"));
+  const std::vector<std::string> files = packageFiles(Package::open(shared));
+  EXPECT_EQ(std::set<std::string>(files.begin(), files.end()).size(), files.size());
 }
 
 TEST_F(Export, BadInputIsRefusedAndLeavesNothing) {

@@ -15,7 +15,7 @@ namespace facezip {
 /// files of the package from the folder `package` beside it.
 const std::map<std::string_view, std::string_view>& viewerPage();
 
-/// Names of the files of a package, relative to it, package.json first: what a page may read.
+/// Names of the files of a package, each once, relative to it, package.json first: what a page may read.
 std::vector<std::string> packageFiles(const Package& package);
 
 /// Writes a folder whose index.html shows the package in a browser, from a server or straight from disk: browsers let

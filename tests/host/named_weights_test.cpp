@@ -83,6 +83,14 @@ TEST_F(Animation, MapsColumnsToExpressions) {
   EXPECT_THAT(clip.frame(1), testing::ElementsAre(-1.0f, 0.0f, 0.25f));
 }
 
+TEST_F(Animation, NamesOfThePackageGoBeforeColumnsOfTime) {
+  const test::TemporaryDirectory folder;
+  const Package package = packageOf(folder, {"time", "smile", "Frame"});
+  io::writeTextFile(folder / "clip.csv", "frame,time,Frame,TIME,smile\n7,0.5,0.25,8,1\n");
+  const AnimationClip clip = readAnimation(folder / "clip.csv", package);
+  EXPECT_THAT(clip.frame(0), testing::ElementsAre(0.5f, 1.0f, 0.25f));
+}
+
 TEST_F(Animation, NamesFileLineAndColumn) {
   EXPECT_THAT(messageOf("smile\n0.5\nx\n"),
               HasSubstr("clip.csv: line 3, column 1: expected a finite number, got \"x\""));

@@ -178,6 +178,26 @@ TEST_F(RigTest, WeightsOfTrackedMeshesAreFound) {
   EXPECT_NEAR(read.frame(1)[5], clip.weights[1][1], 1e-5);
 }
 
+TEST_F(RigTest, AClipCountsNoFramesUnderANameOfThePackage) {
+  Progress progress;
+  const fs::path other = folder() / "frame.facezip";
+  fs::copy(package(), other, fs::copy_options::recursive);
+  for (const char* file : {"package.json", "rig.json"}) {
+    std::string text = test::contentsOf(other / file);
+    for (std::size_t at = text.find("\"r0\""); at != std::string::npos; at = text.find("\"r0\"", at)) {
+      text.replace(at, 4, "\"frame\"");
+    }
+    io::writeTextFile(other / file, text);
+  }
+  const std::vector<fs::path> meshes(3, folder() / "capture/expressions/r1.obj");
+  const SolvedClip clip = solveWeights(other, meshes, {}, progress);
+  writeClip(folder() / "frame.csv", clip);
+  const AnimationClip read = readAnimation(folder() / "frame.csv", Package::open(other));
+  EXPECT_EQ(read.frames(), 3);
+  EXPECT_EQ(read.frame(2)[0], 0.0f) << "the number of the frame is no weight";
+  EXPECT_NEAR(read.frame(2)[5], clip.weights[2][1], 1e-5);
+}
+
 TEST_F(RigTest, SmoothingCalmsAClipAndHeadMotionIsTakenOut) {
   Progress progress;
   const fs::path frames = folder() / "frames";

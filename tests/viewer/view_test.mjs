@@ -3,7 +3,7 @@
 // Screenshots stay in WORK_DIRECTORY.
 import assert from 'node:assert/strict';
 import { execFileSync, spawn, spawnSync } from 'node:child_process';
-import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:net';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
@@ -177,6 +177,25 @@ await run('a package without mesh and normals is shown flat', async () => {
   assert.deepEqual(flat.errors, []);
   await flat.close();
   bare.stop();
+});
+
+await run('a clip weighs an expression called time', async () => {
+  const timed = join(work, 'timed');
+  cpSync(join(packages, 'bare'), timed, { recursive: true });
+  writeFileSync(join(timed, 'package.json'),
+    JSON.stringify({ ...JSON.parse(readFileSync(join(timed, 'package.json'))), expressions: ['time', ...names.slice(1)] }));
+  const clip = join(work, 'timed.csv');
+  writeFileSync(clip, `frame,time\n7,0.25\n7,0.25\n`);
+  const shown = await serve(timed);
+  try {
+    const clock = await open(browser, shown.url);
+    await clock.setInputFiles('#clip', clip);
+    await clock.waitForFunction(() => document.getElementById('note').textContent.includes('2 frames'));
+    await clock.waitForFunction(() => document.querySelector('#expressions input[name="time"]').value === '0.25', null, { timeout: 9000 });
+    await clock.close();
+  } finally {
+    shown.stop();
+  }
 });
 
 await run('100 expressions', async () => {

@@ -73,7 +73,8 @@ struct AnimationClip {
 };
 
 /// Reads a comma-separated table: a header of expression names in any order, then a row of weights a frame. Expressions
-/// without a column stay 0; columns named "frame" or "time" (upper and lower case alike) are skipped; empty lines too.
+/// without a column stay 0; columns named "frame" or "time" (upper and lower case alike) are skipped unless the package
+/// has an expression of that name; empty lines too.
 /// Throws InputError naming file, line and column.
 AnimationClip readAnimation(const std::filesystem::path& file, const Package& package);
 

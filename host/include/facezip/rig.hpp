@@ -111,6 +111,7 @@ struct SolvedClip {
   std::vector<std::string> shapes;           ///< M
   std::vector<std::vector<double>> weights;  ///< frames x M, in [0, 1]
   std::vector<RigResidual> residuals;        ///< of each frame
+  bool numbered = true;                      ///< a column "frame" counts frames; not where the package has that name
   double seconds = 0.0;                      ///< of the solve, reading meshes included
 };
 
@@ -120,7 +121,7 @@ struct SolvedClip {
 SolvedClip solveWeights(const std::filesystem::path& package, const std::vector<std::filesystem::path>& meshes,
                         const SolveWeightsOptions& options, Progress& progress);
 
-/// Writes a clip as `blend --animation` reads it: a header of names, a row of weights for each frame.
+/// Writes a clip as `blend --animation` reads it: a header of names, a row of weights for each frame, numbered or not.
 void writeClip(const std::filesystem::path& file, const SolvedClip& clip);
 
 }  // namespace facezip

@@ -37,18 +37,19 @@ bool isTimeColumn(std::string name) {
   return name == "frame" || name == "time";
 }
 
-/// Expression of each column, kSkippedColumn for time.
+/// Expression of each column, kSkippedColumn for time. Names of the package go first: an expression may be called
+/// "time".
 std::vector<int> parseHeader(const std::string& line, std::size_t line_number, const std::filesystem::path& file,
                              const Package& package) {
   std::vector<int> columns;
   for (const std::string& name : splitLine(line)) {
     const std::string item = fieldItem(line_number, columns.size());
-    if (isTimeColumn(name)) {
+    const std::vector<std::string>& names = package.expressions();
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end() && isTimeColumn(name)) {
       columns.push_back(kSkippedColumn);
       continue;
     }
-    const std::vector<std::string>& names = package.expressions();
-    const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) {
       throw InputError({file.string(), item, "an expression of the package", package::quoted(name),
                         fmt::format("the nearest is {}", blend::nearestNames(name, names, 1).front())});

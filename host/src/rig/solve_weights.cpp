@@ -1,7 +1,9 @@
 // solve_weights.cpp - which weights of a rig make the meshes that were tracked.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -127,6 +129,11 @@ Eigen::MatrixX3d readFrame(const fs::path& file, const LoadedRig& loaded) {
   return mesh.positions;
 }
 
+bool hasName(const Rig& rig, const std::string& name) {
+  const auto in = [&](const std::vector<std::string>& names) { return std::ranges::find(names, name) != names.end(); };
+  return in(rig.shapes) || in(rig.package_expressions);
+}
+
 }  // namespace
 
 SolvedClip solveWeights(const fs::path& package, const std::vector<fs::path>& meshes,
@@ -142,6 +149,7 @@ SolvedClip solveWeights(const fs::path& package, const std::vector<fs::path>& me
   std::vector<ClipSolver::Frame> frames(meshes.size());
   SolvedClip clip;
   clip.shapes = rig.shapes;
+  clip.numbered = !hasName(rig, "frame");
   clip.residuals.resize(meshes.size());
   const bool smoothed = options.smoothing > 0.0 && meshes.size() > 1;
   const auto forEachFrame = [&](const char* stage, const auto& visit) {
@@ -175,13 +183,10 @@ SolvedClip solveWeights(const fs::path& package, const std::vector<fs::path>& me
 }
 
 void writeClip(const fs::path& file, const SolvedClip& clip) {
-  std::string text = "frame";
-  for (const std::string& shape : clip.shapes) text += "," + shape;
-  text += "\n";
+  std::string text = fmt::format("{}{}\n", clip.numbered ? "frame," : "", fmt::join(clip.shapes, ","));
   for (std::size_t f = 0; f < clip.weights.size(); ++f) {
-    text += fmt::format("{}", f);
-    for (const double weight : clip.weights[f]) text += fmt::format(",{:.6g}", weight);
-    text += "\n";
+    if (clip.numbered) text += fmt::format("{},", f);
+    text += fmt::format("{:.6g}\n", fmt::join(clip.weights[f], ","));
   }
   io::writeTextFileAtomically(file, text);
 }

@@ -7,8 +7,8 @@ export function readClip(text, names) {
   if (first < 0) throw new Error('the clip is empty');
   const header = lines[first].split(',').map((name) => name.trim());
   const columns = header.map((name, i) => {
-    if (/^(frame|time)$/i.test(name)) return -1;
     const index = names.indexOf(name);
+    if (index < 0 && /^(frame|time)$/i.test(name)) return -1;  // unless an expression is called that
     if (index < 0) throw new Error(`line ${first + 1}, column ${i + 1}: the package has no expression "${name}"`);
     if (header.indexOf(name) !== i) throw new Error(`line ${first + 1}: "${name}" twice`);
     return index;

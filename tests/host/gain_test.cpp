@@ -152,6 +152,9 @@ TEST_F(Gains, DamagedGuidesAreRefused) {
   EXPECT_THAT(messageOfOpening([](json& d) { d["mesh"]["file"] = "mesh.glb"; }), HasSubstr("no such file"));
   std::ofstream(folder_ / "package/mesh.glb") << "glTF, but cut";
   EXPECT_THAT(messageOfOpening([](json& d) { d["mesh"]["file"] = "mesh.glb"; }), HasSubstr("binary glTF"));
+  fs::remove(folder_ / "package/mesh.glb");
+  fs::create_directory(folder_ / "package/mesh.glb");
+  EXPECT_THAT(messageOfOpening([](json& d) { d["mesh"]["file"] = "mesh.glb"; }), HasSubstr("Is a directory"));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fstream>
 #include <set>
+#include <system_error>
 
 #include "package/package_files.hpp"
 #include "package/package_json.hpp"
@@ -69,7 +70,10 @@ std::uint64_t checkMesh(const fs::path& file) {
   if (!stream)
     throw InputError({file.string(), "", "the mesh of the package", "no such file", "write the package again"});
   stream.read(reinterpret_cast<char*>(header.data()), sizeof(header));
-  const std::uintmax_t bytes = fs::file_size(file);
+  std::error_code error;
+  const std::uintmax_t bytes = fs::file_size(file, error);
+  if (error)
+    throw InputError({file.string(), "", "the mesh of the package", error.message(), "write the package again"});
   if (!stream || std::memcmp(header.data(), "glTF", 4) != 0 || header[1] != 2 || header[2] != bytes) {
     throw InputError({file.string(), "", "a whole binary glTF 2.0 file", fmt::format("{} bytes that are none", bytes),
                       "the file is truncated or damaged: write the package again"});

@@ -143,6 +143,7 @@ TEST_F(Gains, DamagedGuidesAreRefused) {
     return message;
   };
   EXPECT_THAT(messageOfOpening([](json& d) { d["regions"][1]["masks"][0] = 0; }), HasSubstr("no other region"));
+  EXPECT_THAT(messageOfOpening([](json& d) { d["masks"]["samples"][1][0] = 1.01; }), HasSubstr("masks.samples[1][0]"));
   EXPECT_THAT(messageOfOpening([](json& d) { d["regions"][1]["masks"][0] = 2; }), HasSubstr("regions[1].masks[0]"));
   EXPECT_THAT(messageOfOpening([](json& d) { d["regions"][1]["name"] = "left"; }), HasSubstr("unique region names"));
   EXPECT_THAT(messageOfOpening([](json& d) { d["masks"]["count"] = 3; }), HasSubstr("tiles for 3 masks"));
@@ -155,6 +156,21 @@ TEST_F(Gains, DamagedGuidesAreRefused) {
   fs::remove(folder_ / "package/mesh.glb");
   fs::create_directory(folder_ / "package/mesh.glb");
   EXPECT_THAT(messageOfOpening([](json& d) { d["mesh"]["file"] = "mesh.glb"; }), HasSubstr("Is a directory"));
+}
+
+TEST_F(Gains, RegionsMayBeManyAndHaveNoMasks) {
+  PackageDescription description = open().description();
+  for (int r = 2; r < 100; ++r) description.regions.push_back({"empty " + std::to_string(r), {}});
+  std::ofstream(folder_ / "package/package.json") << package::packageJson(description);
+  EXPECT_EQ(open().description().regions.size(), 100u);
+  json tuned = preset();
+  const Gain left = readGain(write(tuned), open());
+  tuned["regions"]["empty 99"] = 0.0;
+  const Gain both = readGain(write(tuned), open());
+  EXPECT_EQ(both.regions[99], 0.0f);
+  EXPECT_EQ(both.cells, left.cells) << "no mask, no cell";
+  const std::vector<float> beta = {0.5f, 0.2f, 0.0f, 1.0f, 0.3f};
+  EXPECT_EQ(frame(beta, &both), frame(beta, &left));
 }
 
 }  // namespace

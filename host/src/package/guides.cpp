@@ -23,8 +23,9 @@ Document masksJson(const PackageMasks& masks) {
           {"samples", masks.samples}};
 }
 
+constexpr int kMostMasks = 1 << 16;
+
 PackageMasks parseMasks(const JsonField& field) {
-  constexpr int kMostMasks = 1 << 16;
   PackageMasks masks;
   masks.file = fileInPackage(field["file"], ".png");
   masks.count = field["count"].integer(1, kMostMasks);
@@ -46,16 +47,15 @@ PackageMasks parseMasks(const JsonField& field) {
 }
 
 std::vector<PackageRegion> parseRegions(const JsonField& field, int mask_count) {
-  constexpr std::size_t kMostRegions = 64;
   std::vector<PackageRegion> regions;
   std::set<std::string> names;
   std::set<int> taken;
-  for (const JsonField& element : field.elements(0, kMostRegions)) {
+  for (const JsonField& element : field.elements(0, kMostMasks)) {
     PackageRegion& region = regions.emplace_back();
     region.name = fileSafeName(element["name"]);
     if (!names.insert(region.name).second)
       element["name"].fail("unique region names", package::quoted(region.name) + " twice");
-    for (const JsonField& mask : element["masks"].elements(1, static_cast<std::size_t>(mask_count))) {
+    for (const JsonField& mask : element["masks"].elements(0, static_cast<std::size_t>(mask_count))) {
       region.masks.push_back(mask.integer(0, mask_count - 1));
       if (!taken.insert(region.masks.back()).second) mask.fail("a mask that no other region has", mask.got());
     }

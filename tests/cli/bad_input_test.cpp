@@ -320,8 +320,11 @@ TEST_F(BadInput, ReportOfACompressionThatIsNone) {
   const fs::path page = folder_ / "page.html";
   io::writeTextFile(folder_ / "list.json", "[]");
   io::writeTextFile(folder_ / "text.json", "{ not json");
-  for (const auto& [file, got] : {std::pair("none.json", "no such file"), std::pair("list.json", "something else"),
-                                  std::pair("text.json", "something else"), std::pair("capture", "a folder")}) {
+  io::writeTextFile(folder_ / "deep.json", "{\"facezip_report\": \"compress\", \"stages\": " +
+                                               std::string(300000, '[') + std::string(300000, ']') + "}");
+  for (const auto& [file, got] :
+       {std::pair("none.json", "no such file"), std::pair("list.json", "something else"),
+        std::pair("text.json", "parse error"), std::pair("deep.json", "nested"), std::pair("capture", "a folder")}) {
     const test::CommandResult result =
         runFacezip("report " + quoted(capture()) + " " + quoted(package()) + " --output " + quoted(page) +
                    " --compress-report " + quoted(folder_ / file));

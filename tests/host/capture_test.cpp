@@ -109,7 +109,15 @@ TEST(Capture, MalformedDescriptionNamesTheField) {
   EXPECT_THAT(with(R"({"unit": 3})"), HasSubstr("unit: expected a string"));
   EXPECT_THAT(with(R"({"maps": {"albedo": {"weight": -1}}})"), HasSubstr("maps.albedo.weight"));
   EXPECT_THAT(with(R"({"maps": {"albedo": 3}})"), HasSubstr("maps.albedo"));
-  EXPECT_THAT(with(R"({"expressions": "e00"})"), HasSubstr("a list of names"));
+  EXPECT_THAT(with(R"({"expressions": "e00"})"), HasSubstr("expressions: expected an array"));
+  EXPECT_THAT(with(R"({"expressions": [3]})"), HasSubstr("expressions[0]: expected a string"));
+  EXPECT_THAT(with(R"({"maps": {"albedo": {"expressions": {"e00": 3}}}})"),
+              HasSubstr("maps.albedo.expressions.e00: expected a string"));
+  EXPECT_THAT(with(R"({"maps": {"albedo": {"weight": 1e999}}})"), HasSubstr("capture.json: expected"));
+  EXPECT_THAT(with(std::string(1000, '[')), HasSubstr("nested"));
+  fs::remove(folder / "c/capture.json");
+  fs::create_directory(folder / "c/capture.json");
+  EXPECT_THAT(failure(folder / "c"), HasSubstr("a folder"));
 }
 
 }  // namespace

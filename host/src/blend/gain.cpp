@@ -38,8 +38,7 @@ void readFactors(const package::JsonField& field, const std::vector<std::string>
     if (found == names.end()) {
       field.fail(fmt::format("{}s of the package ({})", what, fmt::join(names, ", ")), package::quoted(name));
     }
-    gains[static_cast<std::size_t>(found - names.begin())] =
-        static_cast<float>(field[name.c_str()].number(0.0, kLargestGain));
+    gains[static_cast<std::size_t>(found - names.begin())] = static_cast<float>(field[name].number(0.0, kLargestGain));
   }
 }
 

@@ -1,98 +1,57 @@
 #include "capture/capture_json.hpp"
 
-#include <fmt/format.h>
-
-#include <cmath>
-#include <fstream>
-#include <nlohmann/json.hpp>
+#include <limits>
 
 #include "facezip/error.hpp"
+#include "io/read_file.hpp"
+#include "package/json_field.hpp"
+#include "package/package_json.hpp"
 
 namespace facezip {
+namespace fs = std::filesystem;
 namespace {
-using nlohmann::json;
+using package::JsonField;
 
-/// Reads the fields of one JSON object and names what is wrong with them.
-class Fields {
- public:
-  Fields(std::string file, std::string where, const json& object)
-      : file_(std::move(file)), where_(std::move(where)), object_(object) {
-    if (!object.is_object()) fail("", "an object", object);
-  }
+constexpr const char* kCure = "see docs/capture_format.md";
 
-  std::string text(const std::string& field) const {
-    if (!object_.contains(field)) return "";
-    const json& value = object_[field];
-    if (!value.is_string()) fail(field, "a string", value);
-    return value.get<std::string>();
-  }
+std::string optionalText(const JsonField& object, const std::string& key) {
+  return object.has(key) ? object[key].text() : "";
+}
 
-  double weight(const std::string& field) const {
-    if (!object_.contains(field)) return 1.0;
-    const json& value = object_[field];
-    if (!value.is_number() || !std::isfinite(value.get<double>()) || value.get<double>() < 0.0) {
-      fail(field, "a number >= 0", value);
-    }
-    return value.get<double>();
-  }
-
-  std::vector<std::string> names(const std::string& field) const {
-    std::vector<std::string> names;
-    if (!object_.contains(field)) return names;
-    if (!object_[field].is_array()) fail(field, "a list of names", object_[field]);
-    for (const json& value : object_[field]) {
-      if (!value.is_string() || value.get<std::string>().empty()) fail(field, "a list of names", value);
-      names.push_back(value.get<std::string>());
-    }
-    return names;
-  }
-
-  [[noreturn]] void fail(const std::string& field, const std::string& expected, const json& got) const {
-    throw InputError({file_, where_ + field, expected, got.dump().substr(0, 60), "see docs/capture_format.md"});
-  }
-
- private:
-  std::string file_;
-  std::string where_;
-  const json& object_;
-};
-
-CaptureJson::Map readMap(const std::string& file, const std::string& name, const json& object) {
-  const Fields fields(file, fmt::format("maps.{}.", name), object);
+CaptureJson::Map readMap(const JsonField& field) {
   CaptureJson::Map map;
-  map.colour_space = fields.text("colour_space");
-  map.weight = fields.weight("weight");
-  map.neutral = fields.text("neutral");
-  if (!object.contains("expressions")) return map;
-  const Fields files(file, fmt::format("maps.{}.expressions.", name), object["expressions"]);
-  for (const auto& [expression, value] : object["expressions"].items())
-    map.expressions[expression] = files.text(expression);
+  map.colour_space = optionalText(field, "colour_space");
+  if (field.has("weight")) map.weight = field["weight"].number(0, std::numeric_limits<double>::max());
+  map.neutral = optionalText(field, "neutral");
+  if (!field.has("expressions")) return map;
+  const JsonField files = field["expressions"];
+  for (const auto& [expression, file] : files.object().items()) map.expressions[expression] = files[expression].text();
   return map;
 }
 
 }  // namespace
 
-std::optional<CaptureJson> readCaptureJson(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream) return std::nullopt;
-  json root;
-  try {
-    root = json::parse(stream);
-  } catch (const json::parse_error& error) {
-    throw InputError({file.string(), fmt::format("byte {}", error.byte), "JSON", error.what(), ""});
-  }
-  const Fields fields(file.string(), "", root);
+std::optional<CaptureJson> readCaptureJson(const fs::path& file) {
+  std::error_code error;
+  if (!fs::exists(file, error)) return std::nullopt;
+  const nlohmann::json json =
+      package::parseJson(io::readFile(file, "the description of a capture"), file.string(), kCure);
+  const JsonField root(json, file.string(), "", kCure);
   CaptureJson description;
-  description.name = fields.text("name");
-  description.unit = fields.text("unit");
-  description.neutral_mesh = fields.text("neutral_mesh");
-  description.face_region = fields.text("face_region");
-  description.coverage = fields.text("coverage");
-  description.importance = fields.text("importance");
-  description.expressions = fields.names("expressions");
-  if (!root.contains("maps")) return description;
-  if (!root["maps"].is_object()) fields.fail("maps", "an object of maps by name", root["maps"]);
-  for (const auto& [name, map] : root["maps"].items()) description.maps[name] = readMap(file.string(), name, map);
+  description.name = optionalText(root, "name");
+  description.unit = optionalText(root, "unit");
+  description.neutral_mesh = optionalText(root, "neutral_mesh");
+  description.face_region = optionalText(root, "face_region");
+  description.coverage = optionalText(root, "coverage");
+  description.importance = optionalText(root, "importance");
+  if (root.has("expressions")) {
+    for (const JsonField& name : root["expressions"].elements(0, package::kMaxExpressions)) {
+      description.expressions.push_back(name.text());
+    }
+  }
+  if (!root.has("maps")) return description;
+  const JsonField maps = root["maps"];
+  for (const auto& [name, map] : maps.object().items()) description.maps[name] = readMap(maps[name]);
   return description;
 }
 

@@ -10,15 +10,15 @@
 namespace facezip::package {
 using nlohmann::json;
 
-JsonField JsonField::operator[](const char* key) const {
+JsonField JsonField::operator[](const std::string& key) const {
   if (!value_.is_object()) fail("an object", got());
   const auto found = value_.find(key);
   const std::string path = path_.empty() ? key : path_ + "." + key;
   if (found == value_.end()) throw InputError({file_, path, "", "no such field", "write the package again"});
-  return {*found, file_, path};
+  return {*found, file_, path, cure_};
 }
 
-bool JsonField::has(const char* key) const {
+bool JsonField::has(const std::string& key) const {
   if (!value_.is_object()) fail("an object", got());
   return value_.contains(key);
 }
@@ -30,7 +30,7 @@ std::vector<JsonField> JsonField::elements(std::size_t least, std::size_t most) 
   if (value_.size() < least || value_.size() > most) fail(expected, fmt::format("{} elements", value_.size()));
   std::vector<JsonField> fields;
   for (std::size_t i = 0; i < value_.size(); ++i) {
-    fields.emplace_back(value_[i], file_, fmt::format("{}[{}]", path_, i));
+    fields.emplace_back(value_[i], file_, fmt::format("{}[{}]", path_, i), cure_);
   }
   return fields;
 }
@@ -73,7 +73,7 @@ const json& JsonField::object() const {
 }
 
 void JsonField::fail(const std::string& expected, const std::string& got, const std::string& cure) const {
-  throw InputError({file_, path_, expected, got, cure});
+  throw InputError({file_, path_, expected, got, cure.empty() ? cure_ : cure});
 }
 
 std::string JsonField::got() const {
@@ -93,19 +93,18 @@ std::string quoted(const std::string& text) {
   return fmt::format("\"{}{}\"", shown, text.size() > kLongest ? "..." : "");
 }
 
-json parseJson(const std::string& text, const std::string& file) {
+json parseJson(const std::string& text, const std::string& file, const std::string& cure) {
   constexpr int kDeepest = 64;
   const auto limitDepth = [&](int depth, json::parse_event_t, json&) {
-    if (depth > kDeepest) throw InputError({file, "", fmt::format("at most {} nested levels", kDeepest), "more", ""});
+    if (depth > kDeepest) throw InputError({file, "", fmt::format("at most {} nested levels", kDeepest), "more", cure});
     return true;
   };
   try {
     return json::parse(text, limitDepth);
   } catch (const json::parse_error& error) {
-    throw InputError(
-        {file, fmt::format("byte {}", error.byte), "", error.what(), "the file is damaged: write it again"});
+    throw InputError({file, fmt::format("byte {}", error.byte), "JSON", error.what(), cure});
   } catch (const json::out_of_range& error) {  // 1e999
-    throw InputError({file, "", "", error.what(), "the file is damaged: write it again"});
+    throw InputError({file, "", "numbers up to 1.8e308", error.what(), cure});
   }
 }
 

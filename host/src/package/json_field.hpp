@@ -13,14 +13,14 @@ namespace facezip::package {
 
 class JsonField {
  public:
-  /// `value` must outlive the field. `path` is empty for the document itself.
-  JsonField(const nlohmann::json& value, std::string file, std::string path)
-      : value_(value), file_(std::move(file)), path_(std::move(path)) {}
+  /// `value` must outlive the field. `path` is empty for the document itself. `cure`: of errors that have none.
+  JsonField(const nlohmann::json& value, std::string file, std::string path, std::string cure = "")
+      : value_(value), file_(std::move(file)), path_(std::move(path)), cure_(std::move(cure)) {}
 
   /// The member `key` of an object. Throws InputError if this is no object or has no such member.
-  JsonField operator[](const char* key) const;
+  JsonField operator[](const std::string& key) const;
   /// True for an object that has the member `key`. Throws InputError if this is no object.
-  bool has(const char* key) const;
+  bool has(const std::string& key) const;
   /// The elements of an array of `least` to `most` elements. Throws InputError.
   std::vector<JsonField> elements(std::size_t least, std::size_t most) const;
 
@@ -43,10 +43,12 @@ class JsonField {
   const nlohmann::json& value_;
   std::string file_;
   std::string path_;
+  std::string cure_;
 };
 
 /// Parses `text`. Throws InputError with the offset of the fault; nesting deeper than 64 is refused, since code that
-/// walks a document by recursion would run out of stack.
-nlohmann::json parseJson(const std::string& text, const std::string& file);
+/// walks a document by recursion would run out of stack. `cure`: what to do about a fault, where people write the file.
+nlohmann::json parseJson(const std::string& text, const std::string& file,
+                         const std::string& cure = "the file is damaged: write it again");
 
 }  // namespace facezip::package

@@ -68,8 +68,7 @@ void requireUnique(const std::vector<JsonField>& fields, const char* what) {
 }
 
 std::vector<std::string> parseExpressions(const JsonField& field) {
-  constexpr std::size_t kMostExpressions = 65536;
-  const std::vector<JsonField> fields = field.elements(1, kMostExpressions);
+  const std::vector<JsonField> fields = field.elements(1, kMaxExpressions);
   std::vector<std::string> names;
   for (const JsonField& name : fields) names.push_back(fileSafeName(name));
   requireUnique(fields, "expression");

@@ -9,9 +9,10 @@ namespace facezip::package {
 
 inline constexpr char kDescriptionFile[] = "package.json";
 inline constexpr int kFormatVersion = 2;
-inline constexpr int kMaxDifferences = 8;    ///< C
-inline constexpr int kMaxSide = 65536;       ///< texels along a side of a map
-inline constexpr int kMaxAtlasSide = 16384;  ///< what every GPU of the last decade takes as a texture
+inline constexpr int kMaxExpressions = 65536;  ///< N
+inline constexpr int kMaxDifferences = 8;      ///< C
+inline constexpr int kMaxSide = 65536;         ///< texels along a side of a map
+inline constexpr int kMaxAtlasSide = 16384;    ///< what every GPU of the last decade takes as a texture
 
 /// The text of package.json for `description`. Throws InputError for names that are not UTF-8 or a method_json that is
 /// not JSON; everything else is parsePackageJson's to refuse.

@@ -14,6 +14,7 @@
 #include "io/base64.hpp"
 #include "io/read_file.hpp"
 #include "io/staged_directory.hpp"
+#include "package/json_field.hpp"
 #include "package/package_json.hpp"
 #include "report/report_page.hpp"
 
@@ -180,7 +181,7 @@ std::string forScript(const json& data) {
 std::string readCompressReport(const fs::path& file) {
   const std::string expected = "what `facezip compress --report` wrote";
   std::string text = io::readFile(file, expected);
-  const json report = json::parse(text, nullptr, /*allow_exceptions=*/false);
+  const json report = package::parseJson(text, file.string());
   if (report.is_object() && report.value("facezip_report", json()) == "compress") return text;
   throw InputError({file.string(), "", expected, "something else", ""});
 }

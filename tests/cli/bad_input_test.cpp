@@ -229,6 +229,13 @@ TEST_F(BadInput, TwoExpressionsWithTheSameName) {
   expectFailure(cli::kExitInput, {"capture.json", "e00", "twice"});
 }
 
+TEST_F(BadInput, DescriptionThatAPackageCannotHold) {
+  for (const char* field : {R"("weight": 1e999)", R"("weight": 2e9)", R"("colour_space": "srgb")"}) {
+    io::writeTextFile(capture() / "capture.json", std::string(R"({"maps": {"albedo": {)") + field + "}}}");
+    expectFailure(cli::kExitInput, {(capture() / "capture.json").string(), "expected", "see docs/capture_format.md"});
+  }
+}
+
 TEST_F(BadInput, UnitThatCannotBeGuessed) {
   geometry::TriangleMesh mesh = test::gridMesh(21);
   mesh.positions *= 7.0;  // 1.4 m wide, or 1.4 of anything else

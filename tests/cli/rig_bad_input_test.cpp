@@ -116,6 +116,25 @@ TEST_F(RigBadInput, NoTemplateNoNeutralNoShapes) {
   expectFailure(cli::kExitInput, {"no such directory"});
 }
 
+TEST_F(RigBadInput, ShapesWhoseNamesAPackageCannotHold) {
+  const fs::path shape = shapes() / "bumpB.obj";
+  for (const std::string& name :
+       {std::string("bump,B"), std::string("bump\tB"), std::string(201, 'b'), std::string("b\xff")}) {
+    const fs::path renamed = shapes() / (name + ".obj");
+    fs::rename(shape, renamed);
+    expectFailure(cli::kExitInput, {renamed.string() + ": shape: expected a name ", "rename the file"});
+    fs::rename(renamed, shape);
+  }
+  // A captured expression gives way to the shape of its name, and may get too long by that.
+  const std::string name(195, 'b');
+  fs::rename(shape, shapes() / (name + ".obj"));
+  for (const fs::path& below : {capture() / "expressions", capture() / "albedo"}) {
+    const std::string extension = below.filename() == "albedo" ? ".png" : ".obj";
+    fs::rename(below / ("r1" + extension), below / (name + extension));
+  }
+  expectFailure(cli::kExitInput, {"_captured", "at most 200 bytes", "rename the shape or the expression"});
+}
+
 TEST_F(RigBadInput, TwoNeutrals) {
   fs::copy(shapes() / "neutral.obj", shapes() / "generic_neutral.obj");
   expectFailure(cli::kExitInput, {"one neutral"});

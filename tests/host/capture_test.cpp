@@ -120,5 +120,61 @@ TEST(Capture, MalformedDescriptionNamesTheField) {
   EXPECT_THAT(failure(folder / "c"), HasSubstr("a folder"));
 }
 
+// What a package cannot hold is found before the work, and blamed on the capture.
+TEST(Capture, RefusesWhatAPackageCannotHold) {
+  const test::TemporaryDirectory folder;
+  test::writeSmallCapture(folder / "c", {.expressions = 2, .width = 8, .height = 8});
+  const auto with = [&](const std::string& text) {
+    io::writeTextFile(folder / "c/capture.json", text);
+    const std::string message = failure(folder / "c");
+    EXPECT_THAT(message, HasSubstr((folder / "c/capture.json").string()));
+    return message;
+  };
+  EXPECT_THAT(with(R"({"maps": {"albedo": {"colour_space": "srgb"}}})"),
+              HasSubstr("maps.albedo.colour_space: expected \"sRGB\", \"linear\" or \"\", got \"srgb\"; see"));
+  EXPECT_THAT(with(R"({"maps": {"albedo": {"weight": 1.1e9}}})"),
+              HasSubstr("maps.albedo.weight: expected a number from 0 to 1000000000, got 1100000000.0; see"));
+  for (const std::string name : {"a..b", "a/b", ".a", "a\\\\b", "a\\u0001b"}) {
+    EXPECT_THAT(with("{\"maps\": {\"" + name + "\": {}}}"), HasSubstr("map: expected a name without"));
+    EXPECT_THAT(with("{\"expressions\": [\"" + name + "\"]}"), HasSubstr("expression: expected a name without"));
+  }
+  const std::string longest(200, 'a');
+  EXPECT_THAT(with("{\"maps\": {\"" + longest + "a\": {}}}"), HasSubstr("map: expected a name of at most 200 bytes"));
+  EXPECT_THAT(with("{\"expressions\": [\"" + longest + "a\"]}"), HasSubstr("expression: expected a name of at most"));
+  EXPECT_THAT(with(R"({"expressions": ["a,b"]})"), HasSubstr("without '/', '\\', ',', '=', '..'"));
+}
+
+TEST(Capture, TakesNamesOf200Bytes) {
+  const test::TemporaryDirectory folder;
+  const std::string longest(200, 'a');
+  test::writeSmallCapture(folder / "c", {.expressions = 2, .width = 8, .height = 8, .maps = {longest}});
+  for (const char* name : {"neutral", "e00", "e01"}) {
+    const std::string to = std::string(name) == "e01" ? longest : name;
+    fs::rename(folder / "c" / longest / (std::string(name) + ".png"), folder / "c" / longest / (to + ".png"));
+  }
+  EXPECT_THAT(openCapture(folder / "c").expressions, ElementsAre(longest, "e00"));
+}
+
+TEST(Capture, RefusesFilesWhoseNamesAPackageCannotHold) {
+  const test::TemporaryDirectory folder;
+  const fs::path capture = folder / "c";
+  test::writeSmallCapture(capture, {.expressions = 2, .width = 8, .height = 8, .maps = {"albedo", "normal"}});
+  for (const std::string& name :
+       {std::string("a..b"), std::string(201, 'a'), std::string("a\xff"), std::string("a\t")}) {
+    fs::rename(capture / "normal", capture / name);
+    EXPECT_THAT(failure(capture), HasSubstr((capture / name).string() + ": map: expected a name "));
+    EXPECT_EQ(openCapture(capture, {"albedo"}).maps.size(), 1u) << "what is not taken does not matter";
+    fs::rename(capture / name, capture / "normal");
+    for (const char* map : {"albedo", "normal"}) fs::rename(capture / map / "e01.png", capture / map / (name + ".png"));
+    EXPECT_THAT(failure(capture),
+                HasSubstr((capture / "albedo" / (name + ".png")).string() + ": expression: expected"));
+    for (const char* map : {"albedo", "normal"}) fs::rename(capture / map / (name + ".png"), capture / map / "e01.png");
+  }
+  fs::rename(capture, folder / "c\xff");
+  EXPECT_THAT(failure(folder / "c\xff"), HasSubstr("name: expected a name in UTF-8"));
+  io::writeTextFile(folder / "c\xff/capture.json", R"({"name": "Bob"})");
+  EXPECT_EQ(openCapture(folder / "c\xff").name, "Bob");
+}
+
 }  // namespace
 }  // namespace facezip

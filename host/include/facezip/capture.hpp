@@ -38,7 +38,8 @@ struct Capture {
 /// face_region.txt, coverage.png, importance.png. Expressions come in the order of capture.json, else by name.
 /// map_names  maps to take, in this order; empty: all
 /// Throws InputError: no directory, no neutral mesh, no map, a map without neutral, an expression that one map has and
-/// another lacks, two expressions with the same name, no expression, malformed capture.json.
+/// another lacks, two expressions with the same name, no expression, a name that a package cannot hold, malformed
+/// capture.json.
 Capture openCapture(const std::filesystem::path& directory, const std::vector<std::string>& map_names = {});
 
 }  // namespace facezip

@@ -9,10 +9,14 @@
 
 #include "capture/capture_json.hpp"
 #include "image/image_format.hpp"
+#include "package/package_json.hpp"
+#include "package/safe_names.hpp"
 
 namespace facezip {
 namespace fs = std::filesystem;
 namespace {
+
+constexpr const char* kCaptureFile = "capture.json";
 
 /// Extensions of images that can be read, in lower case with the dot.
 const std::set<std::string>& imageExtensions() {
@@ -50,6 +54,7 @@ std::map<std::string, fs::path> imagesByName(const fs::path& folder) {
 struct FoundMap {
   CaptureJson::Map description;
   fs::path folder;
+  fs::path source;  ///< what names the map: its folder, or capture.json
   std::map<std::string, fs::path> images;
 };
 
@@ -63,10 +68,12 @@ std::map<std::string, FoundMap> findMaps(const fs::path& directory, const Captur
     if (!described && !description.maps.empty()) continue;
     std::map<std::string, fs::path> images = imagesByName(entry.path());
     if (!described && images.empty()) continue;
-    maps[name] = {described ? description.maps.at(name) : CaptureJson::Map{}, entry.path(), std::move(images)};
+    maps[name] = {described ? description.maps.at(name) : CaptureJson::Map{}, entry.path(), entry.path(),
+                  std::move(images)};
   }
   for (const auto& [name, map] : description.maps) {
-    FoundMap& found = maps.try_emplace(name, FoundMap{map, directory / name, {}}).first->second;
+    FoundMap& found = maps.try_emplace(name, FoundMap{map, directory / name, {}, {}}).first->second;
+    found.source = directory / kCaptureFile;
     if (!map.neutral.empty()) found.images["neutral"] = directory / map.neutral;
     for (const auto& [expression, file] : map.expressions) found.images[expression] = directory / file;
   }
@@ -76,29 +83,32 @@ std::map<std::string, FoundMap> findMaps(const fs::path& directory, const Captur
 void requireUnique(const std::vector<std::string>& names, const fs::path& file) {
   std::set<std::string> seen;
   for (const std::string& name : names) {
-    if (!seen.insert(name).second) {
-      throw InputError(
-          {file.string(), fmt::format("expression \"{}\"", name), "unique names", "the same name twice", "rename one"});
-    }
-    if (name.find_first_of("/\\,=") != std::string::npos) {
-      throw InputError({file.string(), fmt::format("expression \"{}\"", name), "a name without / \\ , =", name, ""});
-    }
+    if (seen.insert(name).second) continue;
+    throw InputError(
+        {file.string(), fmt::format("expression \"{}\"", name), "unique names", "the same name twice", "rename one"});
   }
+}
+
+/// Refuses here what the package would refuse when all the work is done.
+void requireName(const std::string& name, const char* item, const fs::path& file, const std::string& further = "") {
+  const auto fault = package::nameFault(name, further);
+  if (fault) throw InputError({file.string(), item, fault->expected, fault->got, "rename it"});
 }
 
 /// The expressions' names: capture.json's order, else every image name that any map has, sorted.
 std::vector<std::string> expressionNames(const fs::path& directory, const CaptureJson& description,
                                          const std::map<std::string, FoundMap>& maps) {
   std::vector<std::string> names = description.expressions;
+  std::map<std::string, fs::path> found;  // with the first image of each
   if (names.empty()) {
-    std::set<std::string> all;
-    for (const auto& [map_name, map] : maps) {
-      for (const auto& [name, file] : map.images) all.insert(name);
-    }
-    all.erase("neutral");
-    names.assign(all.begin(), all.end());
+    for (const auto& [map_name, map] : maps) found.insert(map.images.begin(), map.images.end());
+    found.erase("neutral");
+    for (const auto& [name, image] : found) names.push_back(name);
   }
-  requireUnique(names, directory / "capture.json");
+  requireUnique(names, directory / kCaptureFile);
+  for (const std::string& name : names) {  // commas and equals signs part names and weights on the command line
+    requireName(name, "expression", found.contains(name) ? found.at(name) : directory / kCaptureFile, ",=");
+  }
   if (names.empty()) {
     throw InputError({directory.string(), "expressions", "at least one expression beside the neutral", "none",
                       "add MAP/NAME.png for every expression"});
@@ -149,6 +159,16 @@ std::optional<fs::path> optionalFile(const fs::path& directory, const std::strin
   return std::nullopt;
 }
 
+/// The name of a capture that has none of its own.
+std::string nameOf(const fs::path& directory) {
+  const std::string name = fs::absolute(directory).lexically_normal().filename().string();
+  if (!package::isUtf8(name)) {
+    throw InputError({directory.string(), "name", "a name in UTF-8", package::quoted(name),
+                      "rename the directory, or name the capture in capture.json"});
+  }
+  return name.empty() ? "capture" : name;
+}
+
 }  // namespace
 
 Capture openCapture(const fs::path& directory, const std::vector<std::string>& map_names) {
@@ -157,14 +177,12 @@ Capture openCapture(const fs::path& directory, const std::vector<std::string>& m
     throw InputError({directory.string(), "", "a capture directory",
                       fs::exists(directory, error) ? "a file" : "no such directory", ""});
   }
-  const CaptureJson description = readCaptureJson(directory / "capture.json").value_or(CaptureJson{});
+  const CaptureJson description = readCaptureJson(directory / kCaptureFile).value_or(CaptureJson{});
   const std::map<std::string, FoundMap> found = findMaps(directory, description);
 
   Capture capture;
   capture.directory = directory;
-  capture.name =
-      !description.name.empty() ? description.name : fs::absolute(directory).lexically_normal().filename().string();
-  if (capture.name.empty()) capture.name = "capture";
+  capture.name = description.name.empty() ? nameOf(directory) : description.name;
   capture.unit = description.unit;
   capture.neutral_mesh = directory / (description.neutral_mesh.empty() ? "neutral.obj" : description.neutral_mesh);
   if (!fs::exists(capture.neutral_mesh, error)) {
@@ -172,7 +190,10 @@ Capture openCapture(const fs::path& directory, const std::vector<std::string>& m
   }
   const std::vector<std::string> chosen = chooseMaps(directory, found, map_names);
   std::map<std::string, FoundMap> used;
-  for (const std::string& name : chosen) used[name] = found.at(name);
+  for (const std::string& name : chosen) {
+    used[name] = found.at(name);
+    requireName(name, "map", used[name].source);
+  }
   capture.expressions = expressionNames(directory, description, used);
   for (const std::string& name : chosen) capture.maps.push_back(makeMap(name, used.at(name), capture.expressions));
   for (const std::string& name : capture.expressions) {

@@ -1,7 +1,5 @@
 #include "capture/capture_json.hpp"
 
-#include <limits>
-
 #include "facezip/error.hpp"
 #include "io/read_file.hpp"
 #include "package/json_field.hpp"
@@ -20,8 +18,8 @@ std::string optionalText(const JsonField& object, const std::string& key) {
 
 CaptureJson::Map readMap(const JsonField& field) {
   CaptureJson::Map map;
-  map.colour_space = optionalText(field, "colour_space");
-  if (field.has("weight")) map.weight = field["weight"].number(0, std::numeric_limits<double>::max());
+  if (field.has("colour_space")) map.colour_space = package::parseColourSpace(field["colour_space"]);
+  if (field.has("weight")) map.weight = package::parseMetricWeight(field["weight"]);
   map.neutral = optionalText(field, "neutral");
   if (!field.has("expressions")) return map;
   const JsonField files = field["expressions"];

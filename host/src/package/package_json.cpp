@@ -138,12 +138,6 @@ SampleType parseSampleType(const JsonField& field) {
   field.fail("\"8-bit\", \"16-bit\" or \"float\"", quoted(name));
 }
 
-std::string parseColourSpace(const JsonField& field) {
-  const std::string name = field.text();
-  if (name != "sRGB" && name != "linear" && !name.empty()) field.fail("\"sRGB\", \"linear\" or \"\"", quoted(name));
-  return name;
-}
-
 /// Map and set must agree on the cells: the kernel that samples weights clamps to the set's grid.
 void requireSameGrid(const JsonField& field, const PackageMap& map, const PackageWeights& weights) {
   const int columns = weightCells(map.width, map.weight_scale);
@@ -164,7 +158,7 @@ PackageMap parseMap(const JsonField& field, const std::vector<PackageWeights>& w
   map.colour_space = parseColourSpace(field["colour_space"]);
   map.weight_set = field["weights"].integer(0, static_cast<int>(weight_sets.size()) - 1);
   map.weight_scale = field["weight_scale"].integer(1, kMaxSide);
-  map.metric_weight = field["metric_weight"].number(0, kLargestCoefficient);
+  map.metric_weight = parseMetricWeight(field["metric_weight"]);
   map.neutral_file = fileInPackage(field["neutral"]["file"], map.sample_type == SampleType::kFloat32 ? ".exr" : ".png");
   map.difference_bits = field["difference_bits"].oneOf(std::array{8, 16});
   const std::size_t count = static_cast<std::size_t>(differences);
@@ -220,6 +214,14 @@ std::string packageJson(const PackageDescription& description) {
     throw InputError({kDescriptionFile, "", "names in UTF-8 and a method record that is JSON", error.what(), ""});
   }
 }
+
+std::string parseColourSpace(const JsonField& field) {
+  const std::string name = field.text();
+  if (name != "sRGB" && name != "linear" && !name.empty()) field.fail("\"sRGB\", \"linear\" or \"\"", quoted(name));
+  return name;
+}
+
+double parseMetricWeight(const JsonField& field) { return field.number(0, kLargestCoefficient); }
 
 PackageDescription parsePackageJson(const std::string& text, const std::string& file) {
   constexpr std::size_t kMostMaps = 256;

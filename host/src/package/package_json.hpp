@@ -7,6 +7,8 @@
 
 namespace facezip::package {
 
+class JsonField;
+
 inline constexpr char kDescriptionFile[] = "package.json";
 inline constexpr int kFormatVersion = 2;
 inline constexpr int kMaxExpressions = 65536;  ///< N
@@ -22,6 +24,10 @@ std::string packageJson(const PackageDescription& description);
 /// file  path for messages
 /// Throws InputError that names `file`, the field as a JSON path, what was expected and what was found.
 PackageDescription parsePackageJson(const std::string& text, const std::string& file);
+
+/// Fields of a map that a capture's description has too. Throw InputError.
+std::string parseColourSpace(const JsonField& field);
+double parseMetricWeight(const JsonField& field);
 
 /// Quotes text that came from a file for a message: without control characters, cut where it is long.
 std::string quoted(const std::string& text);

@@ -8,15 +8,34 @@
 
 namespace facezip::package {
 
-std::string fileSafeName(const JsonField& field) {
+std::optional<NameFault> nameFault(const std::string& name, const std::string& further) {
   constexpr std::size_t kLongest = 200;  // file systems stop at 255, and an extension follows
-  const std::string name = field.text();
-  const std::string expected = "a name without '/', '\\', '..', a leading '.' or control characters";
-  if (name.empty()) field.fail(expected, "an empty name");
-  if (name.size() > kLongest) field.fail(fmt::format("a name of at most {} bytes", kLongest), quoted(name));
+  const std::string refused = "/\\" + further;
+  std::string expected = "a name without ";
+  for (const char c : refused) expected += fmt::format("'{}', ", c);
+  expected += "'..', a leading '.' or control characters";
+  if (name.empty()) return NameFault{expected, "an empty name"};
+  if (name.size() > kLongest) return NameFault{fmt::format("a name of at most {} bytes", kLongest), quoted(name)};
+  if (!isUtf8(name)) return NameFault{"a name in UTF-8", quoted(name)};
   bool safe = name.front() != '.' && name.find("..") == std::string::npos;
-  for (const char c : name) safe = safe && static_cast<unsigned char>(c) >= 0x20 && c != 0x7f && c != '/' && c != '\\';
-  if (!safe) field.fail(expected, quoted(name));
+  safe = safe && name.find_first_of(refused) == std::string::npos;
+  for (const char c : name) safe = safe && static_cast<unsigned char>(c) >= 0x20 && c != 0x7f;
+  if (!safe) return NameFault{expected, quoted(name)};
+  return std::nullopt;
+}
+
+bool isUtf8(const std::string& text) {
+  try {
+    static_cast<void>(nlohmann::json(text).dump());
+    return true;
+  } catch (const nlohmann::json::type_error&) {
+    return false;
+  }
+}
+
+std::string fileSafeName(const JsonField& field) {
+  const std::string name = field.text();
+  if (const auto fault = nameFault(name)) field.fail(fault->expected, fault->got);
   return name;
 }
 

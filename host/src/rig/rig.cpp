@@ -11,6 +11,7 @@
 #include "compress/stage_clock.hpp"
 #include "facezip/package.hpp"
 #include "package/footprint.hpp"
+#include "package/safe_names.hpp"
 #include "rig/moving_head.hpp"
 #include "rig/rig_json.hpp"
 #include "rig/rig_meshes.hpp"
@@ -37,7 +38,8 @@ std::vector<std::vector<double>> rowsOf(const Eigen::MatrixXd& matrix) {
 
 /// Names of the captured expressions in a package that has shapes too. A shape keeps its name: it is what is animated.
 std::vector<std::string> packageNamesOf(const std::vector<std::string>& expressions,
-                                        const std::vector<std::string>& shapes, Progress& progress) {
+                                        const std::vector<std::string>& shapes, const std::string& file,
+                                        Progress& progress) {
   const auto taken = [&](const std::string& name, const std::vector<std::string>& names) {
     return std::find(names.begin(), names.end(), name) != names.end();
   };
@@ -48,6 +50,10 @@ std::vector<std::string> packageNamesOf(const std::vector<std::string>& expressi
     std::string longer = name;
     do longer += "_captured";
     while (taken(longer, shapes) || taken(longer, renamed));
+    if (const auto fault = package::nameFault(longer)) {
+      throw InputError({file, "an expression, with _captured since it names a shape too", fault->expected, fault->got,
+                        "rename the shape or the expression"});
+    }
     name = longer;
     progress.note(fmt::format("\"{}\" names a shape too: the captured expression is \"{}\"", before, name));
   }
@@ -109,7 +115,8 @@ class Rigging {
     }
     report_.expressions = capture_.expressions;
     report_.shapes = template_.names;
-    report_.package_expressions = packageNamesOf(capture_.expressions, template_.names, progress_);
+    report_.package_expressions =
+        packageNamesOf(capture_.expressions, template_.names, capture_.directory.string(), progress_);
     report_.skin_vertices = static_cast<int>(skin);
     clock_.book("reading meshes");
   }

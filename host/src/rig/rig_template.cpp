@@ -8,6 +8,7 @@
 #include "facezip/error.hpp"
 #include "facezip/geometry/obj_io.hpp"
 #include "facezip/geometry/topology.hpp"
+#include "package/safe_names.hpp"
 
 namespace facezip::rig {
 namespace fs = std::filesystem;
@@ -31,8 +32,8 @@ std::vector<fs::path> objFiles(const fs::path& directory) {
 }
 
 void requireName(const std::string& name, const fs::path& file) {
-  if (name.find_first_of("\\,=:") == std::string::npos && name.find("..") == std::string::npos) return;
-  throw InputError({file.string(), "shape", "a name without \\ , = : and ..", name, "rename the file"});
+  const auto fault = package::nameFault(name, ",=:");
+  if (fault) throw InputError({file.string(), "shape", fault->expected, fault->got, "rename the file"});
 }
 
 }  // namespace

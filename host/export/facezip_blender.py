@@ -164,6 +164,11 @@ def beta_nodes(graph, face, names):
     return sockets
 
 
+def first_of(inputs, *names):
+    """The input that has one of the names: Blender renames them."""
+    return inputs[next(name for name in names if name in inputs)]
+
+
 def build(package):
     bpy.ops.import_scene.gltf(filepath=os.path.join(HERE, "scene.gltf"))
     face = next(o for o in bpy.context.selected_objects if o.type == "MESH")
@@ -174,7 +179,7 @@ def build(package):
     graph = Graph(material.node_tree)
     shader = material.node_tree.nodes["Principled BSDF"]
     shader.inputs["Roughness"].default_value = 0.5
-    shader.inputs["Specular"].default_value = 0.35
+    first_of(shader.inputs, "Specular IOR Level", "Specular").default_value = 0.35  # since Blender 4.0; before
     uv = graph.node("ShaderNodeUVMap").outputs[0]
     betas = beta_nodes(graph, face, package["expressions"])
     values = {}
@@ -284,4 +289,5 @@ def main(arguments):
         bpy.ops.wm.save_as_mainfile(filepath=os.path.abspath(options["--save"]))
 
 
-main(sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else [])
+if __name__ == "__main__":
+    main(sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else [])

@@ -2,42 +2,65 @@
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readFileSync, rmSync } from 'node:fs';
-import { join } from 'node:path';
+import { dirname, join } from 'node:path';
+import { fileURLToPath } from 'node:url';
 import { decode } from 'fast-png';
 import { EXRLoader } from 'three/examples/jsm/loaders/EXRLoader.js';
 import { FloatType } from 'three';
 
 const [facezip, blender, packages, work] = process.argv.slice(2);
-const packagePath = join(packages, 'head');
-const description = JSON.parse(readFileSync(join(packagePath, 'package.json')));
-const names = description.expressions;
-rmSync(work, { recursive: true, force: true });
-execFileSync(facezip, ['export', packagePath, '--target', 'blender', '--output', work]);
+const check = join(dirname(fileURLToPath(import.meta.url)), 'blender_check.py');
+const read = (path) => JSON.parse(readFileSync(join(path, 'package.json')));
+const names = read(join(packages, 'head')).expressions;
 const weights = `${names[0]}=0.6,${names[3]}=0.9`;
-execFileSync(facezip, ['blend', packagePath, '--weights', weights, '--output', join(work, 'expected.{map}.png')]);
-for (const map of description.maps) {
-  const file = join(work, `${map.name}.exr`);
-  execFileSync(blender, ['--background', '--factory-startup', '--python-exit-code', '1', '--python', join(work, 'facezip_blender.py'),
-    '--', '--weights', weights, '--bake', `${map.name}=${file}`], { stdio: ['ignore', 'ignore', 'inherit'] });
+rmSync(work, { recursive: true, force: true });
+
+/** Runs a script in Blender; the texture that it bakes into `file`, row 0 first. */
+function bake(file, script, ...args) {
+  execFileSync(blender, ['--background', '--factory-startup', '--python-exit-code', '1', '--python', script, '--', ...args],
+    { stdio: ['ignore', 'ignore', 'inherit'] });
   const loader = new EXRLoader();
   loader.setDataType(FloatType);
   const bytes = readFileSync(file);
-  const baked = loader.parse(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength));
-  const expected = decode(readFileSync(join(work, `expected.${map.name}.png`)));
-  const channels = baked.data.length / (map.width * map.height);
+  const { data, width, height } = loader.parse(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength));
+  const channels = data.length / (width * height);
+  return (x, y, c) => data[((height - 1 - y) * width + x) * channels + c];  // the loader gives the last row first
+}
+
+/** Baked texels are what `facezip blend` writes. */
+function compare(title, map, baked, expected, encoded = (value) => value) {
   let largest = 0, compared = 0;
   for (let y = 0; y < map.height; ++y) {
     for (let x = 0; x < map.width; ++x) {
-      const from = ((map.height - 1 - y) * map.width + x) * channels;  // the loader gives the last row first
-      if (!(baked.data[from] + baked.data[from + 1] + baked.data[from + 2] > 0)) continue;  // outside the islands
+      if (!(baked(x, y, 0) + baked(x, y, 1) + baked(x, y, 2) > 0)) continue;  // outside the islands
       ++compared;
       for (let c = 0; c < 3; ++c) {
-        const value = Math.min(Math.max(255 * baked.data[from + c], 0), 255);
+        const value = Math.min(Math.max(255 * encoded(baked(x, y, c)), 0), 255);
         largest = Math.max(largest, Math.abs(value - expected.data[(y * map.width + x) * expected.channels + c]));
       }
     }
   }
-  console.log(`${map.name}: largest difference ${largest.toFixed(3)}/255 at ${compared} texels`);
+  console.log(`${title}: largest difference ${largest.toFixed(3)}/255 at ${compared} texels`);
   assert.ok(compared > 0.5 * map.width * map.height, 'texels were baked');
   assert.ok(largest <= 1.5, `${largest}/255`);
 }
+
+/** Exports a package and compares every map, and the base colour with what the albedo says. */
+function checkExport(packagePath, folder) {
+  const description = read(packagePath);
+  execFileSync(facezip, ['export', packagePath, '--target', 'blender', '--output', folder]);
+  execFileSync(facezip, ['blend', packagePath, '--weights', weights, '--output', join(folder, 'expected.{map}.png')]);
+  const expected = (map) => decode(readFileSync(join(folder, `expected.${map.name}.png`)));
+  for (const map of description.maps) {
+    const file = join(folder, `${map.name}.exr`);
+    const baked = bake(file, join(folder, 'facezip_blender.py'), '--weights', weights, '--bake', `${map.name}=${file}`);
+    compare(map.name, map, baked, expected(map));
+  }
+  const albedo = description.maps.find((map) => map.name === 'albedo');
+  const file = join(folder, 'base_colour.exr');
+  const toSrgb = (c) => (c <= 0.0031308 ? 12.92 * c : 1.055 * c ** (1 / 2.4) - 0.055);
+  compare('base colour', albedo, bake(file, check, folder, weights, file),
+    expected(albedo), toSrgb);
+}
+
+checkExport(join(packages, 'head'), join(work, 'head'));

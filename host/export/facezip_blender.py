@@ -123,7 +123,7 @@ def blended_map(graph, uv, package, blend_map, betas):
     for difference, weight in zip(blend_map["differences"], blended_weights(graph, uv, package, blend_map, betas)):
         def channels(function):
             values = [function(s, o) for s, o in zip(difference["scale"], difference["offset"])]
-            return tuple((values * 3)[:3]) if len(values) < 3 else tuple(values[:3])
+            return (values[0],) * 3 if len(values) < 3 else tuple(values[:3])  # gray comes as three, alpha apart
 
         zero = channels(lambda s, o: round(-o / s) / most if s > 0 else 0.0)
         scale = channels(lambda s, o: s * most / 255.0)

@@ -1,10 +1,10 @@
 // The material that `facezip export --target blender` builds, baked by Blender: node blender_test.mjs FACEZIP BLENDER PACKAGES WORK
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { readFileSync, rmSync } from 'node:fs';
+import { cpSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { decode } from 'fast-png';
+import { decode, encode } from 'fast-png';
 import { EXRLoader } from 'three/examples/jsm/loaders/EXRLoader.js';
 import { FloatType } from 'three';
 
@@ -27,7 +27,7 @@ function bake(file, script, ...args) {
   return (x, y, c) => data[((height - 1 - y) * width + x) * channels + c];  // the loader gives the last row first
 }
 
-/** Baked texels are what `facezip blend` writes. */
+/** Baked texels are what `facezip blend` writes; of gray maps, as three equal channels. */
 function compare(title, map, baked, expected, encoded = (value) => value) {
   let largest = 0, compared = 0;
   for (let y = 0; y < map.height; ++y) {
@@ -36,7 +36,8 @@ function compare(title, map, baked, expected, encoded = (value) => value) {
       ++compared;
       for (let c = 0; c < 3; ++c) {
         const value = Math.min(Math.max(255 * encoded(baked(x, y, c)), 0), 255);
-        largest = Math.max(largest, Math.abs(value - expected.data[(y * map.width + x) * expected.channels + c]));
+        const channel = map.channels < 3 ? 0 : c;
+        largest = Math.max(largest, Math.abs(value - expected.data[(y * map.width + x) * expected.channels + channel]));
       }
     }
   }
@@ -63,4 +64,27 @@ function checkExport(packagePath, folder) {
     expected(albedo), toSrgb);
 }
 
+/** The first channels of a map of three, as a map of its own. */
+function withFewerChannels(packagePath, map, channels) {
+  const name = `gray_${channels}`;
+  const reduce = (file) => {
+    const { width, height, data, ...image } = decode(readFileSync(join(packagePath, file)));
+    const kept = data.filter((_, i) => i % image.channels < channels);
+    const to = file.replace('.png', `_${channels}.png`);
+    writeFileSync(join(packagePath, to), encode({ width, height, data: kept, channels, depth: image.depth }));
+    return to;
+  };
+  return { ...map, name, channels, neutral: { file: reduce(map.neutral.file) },
+    differences: map.differences.map(({ file, scale, offset }) =>
+      ({ file: reduce(file), scale: scale.slice(0, channels), offset: offset.slice(0, channels) })) };
+}
+
 checkExport(join(packages, 'head'), join(work, 'head'));
+
+const variant = join(work, 'variant_package');
+cpSync(join(packages, 'head'), variant, { recursive: true });
+const description = read(variant);
+const albedo = description.maps.find((map) => map.name === 'albedo');
+const maps = [albedo, withFewerChannels(variant, albedo, 1), withFewerChannels(variant, albedo, 2)];
+writeFileSync(join(variant, 'package.json'), JSON.stringify({ ...description, maps }));
+checkExport(variant, join(work, 'variant'));

@@ -189,7 +189,8 @@ def build(package):
         value = values[blend_map["name"]] = blended_map(graph, uv, package, blend_map, betas)
         name = blend_map["name"].lower()
         if "albedo" in name or "diffuse" in name:
-            graph.put(shader.inputs["Base Color"], to_linear(graph, value))
+            linear = blend_map["colour_space"] == "linear"
+            graph.put(shader.inputs["Base Color"], value if linear else to_linear(graph, value))
         elif "normal" in name:
             normal = graph.node("ShaderNodeNormalMap")
             graph.put(normal.inputs["Color"], value)

@@ -1,10 +1,11 @@
 // The folder of `facezip export --target three` in a page of somebody's own: node three_test.mjs FACEZIP CHROMIUM PACKAGES WORK_DIRECTORY
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { mkdirSync, readFileSync, rmSync } from 'node:fs';
+import { cpSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { dirname, extname, join, normalize } from 'node:path';
 import { fileURLToPath } from 'node:url';
+import { decode, encode } from 'fast-png';
 import { blendDifference, changedShare, launch, openPage, results, run } from './common.mjs';
 
 const [facezip, browserPath, packages, work] = process.argv.slice(2);
@@ -26,8 +27,9 @@ const pageText = `<!doctype html><meta charset="utf-8"><link rel="icon" href="da
   document.body.append(renderer.domElement);
   const scene = new THREE.Scene();
   scene.add(new THREE.HemisphereLight(0xffffff, 0x555555, 2));
-  const start = async () => {
-    const face = await loadFace(renderer, '/face/');
+  globalThis.load = async (folder) => {
+    if (globalThis.face) scene.remove(globalThis.face.object);
+    const face = await loadFace(renderer, folder);
     scene.add(face.object);
     face.object.geometry.computeBoundingSphere();
     const { center, radius } = face.object.geometry.boundingSphere;
@@ -40,7 +42,7 @@ const pageText = `<!doctype html><meta charset="utf-8"><link rel="icon" href="da
     };
     globalThis.face = face;
   };
-  globalThis.ready = start();
+  globalThis.ready = globalThis.load('/face/');
 </script>`;
 const types = { '.js': 'text/javascript', '.png': 'image/png', '.json': 'application/json' };
 const three = dirname(dirname(fileURLToPath(import.meta.resolve('three'))));
@@ -78,6 +80,23 @@ await run('weights move the face', async () => {
   const neutral = await shoot({}, 'neutral');
   assert.ok(changedShare(neutral, await shoot({ [names[0]]: 1 }, 'expression'), 0) > 0.005);
   assert.equal(changedShare(neutral, await shoot({}, 'neutral_again'), 0), 0);
+});
+await run('a linear albedo is shaded as it is', async () => {
+  // The same colours, stored as linear light.
+  const other = join(work, 'linear', 'package');
+  cpSync(join(work, 'face', 'package'), other, { recursive: true });
+  const albedo = description.maps.find((map) => map.name === 'albedo');
+  const image = decode(readFileSync(join(other, albedo.neutral.file)));
+  const light = (code) => (code / 255 <= 0.04045 ? code / 255 / 12.92 : ((code / 255 + 0.055) / 1.055) ** 2.4);
+  const data = Uint16Array.from(image.data, (code) => Math.round(65535 * light(code)));
+  writeFileSync(join(other, albedo.neutral.file), encode({ ...image, data, depth: 16 }));
+  const maps = description.maps.map((map) =>
+    (map === albedo ? { ...map, colour_space: 'linear', sample_type: '16-bit' } : map));
+  writeFileSync(join(other, 'package.json'), JSON.stringify({ ...description, maps }));
+  const expected = await shoot({}, 'neutral');
+  await page.evaluate(() => globalThis.load('/linear/'));
+  const changed = changedShare(expected, await shoot({}, 'neutral_linear'), 0);
+  assert.ok(changed < 0.001, `${changed} of the picture changed`);
 });
 await run('no console errors', () => assert.deepEqual(page.errors, []));
 await browser.close();

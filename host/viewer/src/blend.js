@@ -111,7 +111,8 @@ class MapTextures {
     return new MapTextures(description, map, set, neutral, differences, floatsFilter);
   }
   constructor(description, map, set, neutral, differences, floatsFilter) {
-    Object.assign(this, { name: map.name, width: map.width, height: map.height, set, count: differences.length });
+    Object.assign(this, { name: map.name, width: map.width, height: map.height, set, count: differences.length,
+      linear: map.colour_space === 'linear' });
     const bytes = neutral.most === 255;
     const data = toRgba(neutral, new (bytes ? Uint8Array : Float32Array)(4 * map.width * map.height));
     const texture = new THREE.DataTexture(data, map.width, map.height, THREE.RGBAFormat,

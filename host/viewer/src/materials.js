@@ -36,6 +36,10 @@ export function shadedMaterial(textures, uniforms) {
   const albedo = mapNamed(textures, 'albedo') ?? mapNamed(textures, 'diffuse') ?? textures.maps[0];
   const normal = mapNamed(textures, 'normal');
   const roughness = mapNamed(textures, 'roughness');
+  const declarations = `${blendHeader(textures.differences)} ${tangentFrame} ${toLinear}
+    ${albedo.source('albedo')} ${normal?.source('normal') ?? ''} ${roughness?.source('roughness') ?? ''}`;
+  const stored = 'clamp(albedo_value(fz_uv).rgb, 0.0, 1.0)';
+  const colour = albedo.linear ? stored : `fz_linear(${stored})`;
   const material = new THREE.MeshStandardMaterial({ roughness: 0.55, side: THREE.DoubleSide });
   material.onBeforeCompile = (shader) => {
     withUvs(shader);
@@ -45,9 +49,8 @@ export function shadedMaterial(textures, uniforms) {
       .replace('#include <common>', `#include <common>
         varying vec2 fz_uv;
         uniform bool detail;
-        ${blendHeader(textures.differences)} ${tangentFrame} ${toLinear}
-        ${albedo.source('albedo')} ${normal?.source('normal') ?? ''} ${roughness?.source('roughness') ?? ''}`)
-      .replace('#include <map_fragment>', `diffuseColor.rgb = fz_linear(clamp(albedo_value(fz_uv).rgb, 0.0, 1.0));
+        ${declarations}`)
+      .replace('#include <map_fragment>', `diffuseColor.rgb = ${colour};
         ${inside}`);
     if (normal) {
       shader.fragmentShader = shader.fragmentShader.replace('#include <normal_fragment_maps>', `
@@ -58,6 +61,8 @@ export function shadedMaterial(textures, uniforms) {
         'float roughnessFactor = clamp(roughness_value(fz_uv).r, 0.05, 1.0);');
     }
   };
+  // By itself three.js compares the text of onBeforeCompile, and would draw a second face with the first one's program.
+  material.customProgramCacheKey = () => `${declarations} ${colour}`;
   return material;
 }
 

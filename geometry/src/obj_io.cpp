@@ -56,6 +56,30 @@ std::string readText(const std::filesystem::path& file) {
   return std::move(text).str();
 }
 
+// Drops a byte order mark and joins each line that ends in a backslash with the next, but for comments, which may end
+// in a path. As many empty lines follow what was joined: line numbers stay those of the file.
+std::string plainLines(std::string_view text) {
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  std::string plain;
+  plain.reserve(text.size());
+  std::size_t joined = 0;
+  for (bool comment = false; !text.empty();) {
+    const std::size_t length = std::min(text.find_first_of("\r\n"), text.size());
+    const std::string_view line = text.substr(0, length);
+    if (joined == 0) comment = line.starts_with('#');
+    text.remove_prefix(length);
+    text.remove_prefix(text.starts_with("\r\n") ? 2 : std::min<std::size_t>(text.size(), 1));
+    if (line.ends_with('\\') && !comment) {
+      plain.append(line.substr(0, length - 1)).append(1, ' ');
+      ++joined;
+      continue;
+    }
+    plain.append(line).append(joined + 1, '\n');
+    joined = 0;
+  }
+  return plain;
+}
+
 // Takes the next word off the line; empty at its end.
 std::string_view nextWord(std::string_view& line) {
   const char* const begin = std::find_if_not(line.begin(), line.end(), isBlank);
@@ -234,7 +258,7 @@ std::string formatObj(const TriangleMesh& mesh) {
 }  // namespace
 
 TriangleMesh readObj(const std::filesystem::path& file) {
-  const std::string text = readText(file);
+  const std::string text = plainLines(readText(file));
   const ObjLines lines = scanLines(file, text);
   const tinyobj::ObjReader reader = parse(file, text);
 

@@ -70,6 +70,19 @@ TEST_F(ObjFile, ObjectsGroupsAndMaterialsAreOneMeshInFileOrder) {
   EXPECT_EQ(mesh.positions.row(4), Eigen::RowVector3d(5, 5, 5));
 }
 
+TEST_F(ObjFile, AByteOrderMarkAndContinuedLinesAreRead) {
+  const TriangleMesh plain = read(kSquare + kSquareUvs + "f 1/1 2/2 3/3 4/4\n");
+  const TriangleMesh mesh =
+      read("\xef\xbb\xbf" + kSquare + "# kept in C:\\meshes\\\n" + kSquareUvs + "f 1/1 \\\n 2/2\\\r\n3/3 4/4\r\n");
+  EXPECT_EQ(mesh.positions, plain.positions);
+  EXPECT_EQ(mesh.uvs, plain.uvs);
+  EXPECT_EQ(mesh.triangles, plain.triangles);
+  EXPECT_EQ(mesh.uv_triangles, plain.uv_triangles);
+  // Lines are counted as in the file: v 1 to 4, f 5 and 6.
+  EXPECT_THAT(refusal("\xef\xbb\xbf" + kSquare + "f 1 2 \\\n 3\nf 1 2 9\n"), HasSubstr("line 7: "));
+  EXPECT_THAT(refusal(kSquare + "f 1 2 3 \\"), HasSubstr("nothing"));
+}
+
 TEST_F(ObjFile, KeepsVerticesThatNoFaceUsesAndEqualOnes) {
   const TriangleMesh mesh = read("v 9 9 9\nv 0 0 0\nv 0 0 0\nv 1 0 0\nv 0 0 0\nf 2 3 4\n");
   EXPECT_EQ(mesh.positions.rows(), 5);

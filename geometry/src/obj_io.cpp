@@ -7,12 +7,14 @@
 #include <tiny_obj_loader.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -23,6 +25,25 @@
 
 namespace facezip::geometry {
 namespace {
+
+bool isObj(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  // A name that starts with a dot is the desktop's or an unfinished copy, not a mesh.
+  return extension == ".obj" && file.filename().string().front() != '.';
+}
+
+void requireUnique(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& files) {
+  std::map<std::string, std::string> seen;
+  for (const std::filesystem::path& file : files) {
+    const std::string name = file.filename().string();
+    const auto [it, inserted] = seen.emplace(file.stem().string(), name);
+    if (inserted) continue;
+    throw InputError({folder.string(), fmt::format("mesh \"{}\"", it->first), "one file",
+                      fmt::format("{} and {}", it->second, name), "remove or rename one"});
+  }
+}
 
 bool isBlank(char c) { return c == ' ' || c == '\t'; }
 bool endsLine(char c) { return c == '\n' || c == '\r'; }
@@ -274,6 +295,23 @@ TriangleMesh readObj(const std::filesystem::path& file) {
   // Texture coordinates that no face uses are as good as none: callers ask "has it UVs?" by their number.
   if (lines.faces_have_uvs) mesh.uvs = coordinates<Eigen::MatrixX2d>(file, reader.GetAttrib().texcoords, lines.uvs);
   return mesh;
+}
+
+std::vector<std::filesystem::path> objFiles(const std::filesystem::path& folder) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  std::vector<fs::path> files;
+  for (fs::directory_iterator entry(folder, error); !error && entry != fs::directory_iterator();
+       entry.increment(error)) {
+    std::error_code ignored;
+    if (entry->is_regular_file(ignored) && isObj(entry->path())) files.push_back(entry->path());
+  }
+  if (error) {
+    throw InputError({folder.string(), "", "a folder that can be read", error.message(), "check its permissions"});
+  }
+  std::sort(files.begin(), files.end());
+  requireUnique(folder, files);
+  return files;
 }
 
 void writeObj(const std::filesystem::path& file, const TriangleMesh& mesh) {

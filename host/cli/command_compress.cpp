@@ -39,7 +39,7 @@ void addCompressCommand(CLI::App& app, const CommonOptions& common) {
     TerminalProgress progress(common.quiet);
     requireReportPlace(arguments->report);
     const CancelOnSignal cancel(progress);
-    const Capture capture = openCapture(arguments->capture, arguments->maps);
+    const Capture capture = openCapture(arguments->capture, arguments->maps, &progress);
     const Device device = openDevice(arguments->device, &progress);
     const CompressReport report = compressCapture(capture, arguments->output, options, device, progress);
     if (!arguments->report.empty()) writeReport(arguments->report, toJson(report));

@@ -90,7 +90,7 @@ void addRigCommand(CLI::App& app, const CommonOptions& common) {
     TerminalProgress progress(common.quiet);
     requireReportPlace(arguments->report);
     const CancelOnSignal cancel(progress);
-    const Capture capture = openCapture(arguments->capture, arguments->maps);
+    const Capture capture = openCapture(arguments->capture, arguments->maps, &progress);
     const Device device = openDevice(arguments->device);
     const RigReport report = rigCapture(capture, arguments->rig_template, arguments->output, options, device, progress);
     if (!arguments->report.empty()) writeReport(arguments->report, toJson(report));

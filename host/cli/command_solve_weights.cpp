@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 
 #include "commands.hpp"
 #include "facezip/error.hpp"
+#include "facezip/geometry/obj_io.hpp"
 #include "facezip/report.hpp"
 #include "facezip/rig.hpp"
 #include "tables.hpp"
@@ -24,12 +24,8 @@ std::vector<fs::path> framesOf(const std::vector<std::string>& arguments) {
       frames.emplace_back(argument);
       continue;
     }
-    std::vector<fs::path> files;
-    for (const fs::directory_entry& entry : fs::directory_iterator(argument)) {
-      if (entry.is_regular_file() && entry.path().extension() == ".obj") files.push_back(entry.path());
-    }
+    const std::vector<fs::path> files = geometry::objFiles(argument);
     if (files.empty()) throw InputError({argument, "", "OBJ files, one for each frame", "none", ""});
-    std::sort(files.begin(), files.end());
     frames.insert(frames.end(), files.begin(), files.end());
   }
   return frames;

@@ -145,6 +145,16 @@ TEST_F(BadInput, MeshOfAnotherTopology) {
   expectFailure(cli::kExitInput, {"e01.obj", "441", "400"});
 }
 
+TEST_F(BadInput, MeshThatMatchesNoExpressionIsNoted) {
+  fs::create_directory(capture() / "expressions");
+  for (const char* name : {"E00.obj", "e01.OBJ"}) {
+    fs::copy_file(capture() / "neutral.obj", capture() / "expressions" / name);
+  }
+  const test::CommandResult result = compress();
+  EXPECT_EQ(result.exit_code, cli::kExitSuccess) << result.error;
+  EXPECT_THAT(result.error, HasSubstr("E00.obj matches no expression; no mesh for e00, e02"));
+}
+
 TEST_F(BadInput, MeshWithoutUvs) {
   geometry::TriangleMesh mesh = test::gridMesh(21);
   mesh.uvs.resize(0, 2);

@@ -65,6 +65,7 @@ class RigBadInput : public testing::Test {
 };
 
 TEST_F(RigBadInput, GoodInputIsTakenAndTold) {
+  fs::rename(shapes() / "bumpC.obj", shapes() / "bumpC.OBJ");
   writeGuess("expression,bumpA,bumpB,bumpC\nr0,1,0,0\nr1,0,0.7,0.4\nr2,0.5,0.5,0\nr3,0,0.1,1\n");
   const test::CommandResult result =
       rig("--weights " + quoted(folder_ / "guess.csv") + " --report " + quoted(folder_ / "r.json"));

@@ -126,6 +126,16 @@ TEST_F(ObjFile, MissingFileAndFolderAreRefused) {
   EXPECT_THROW(readObj(directory_.path()), InputError);
 }
 
+TEST_F(ObjFile, FilesOfAFolderByNameTheExtensionInAnyCase) {
+  for (const char* name : {"b.OBJ", "a-2.obj", "a.Obj", ".b.obj", "a.png", "obj"}) std::ofstream(directory_ / name);
+  std::filesystem::create_directory(directory_ / "folder.obj");
+  EXPECT_THAT(objFiles(directory_.path()),
+              testing::ElementsAre(directory_ / "a-2.obj", directory_ / "a.Obj", directory_ / "b.OBJ"));
+  EXPECT_THROW(objFiles(directory_ / "none"), InputError);
+  std::ofstream(directory_ / "b.obj");
+  EXPECT_THROW(objFiles(directory_.path()), InputError);
+}
+
 TEST_F(ObjFile, EmptyMeshesAreRefused) {
   EXPECT_THAT(refusal(""), HasSubstr("no vertices"));
   EXPECT_THAT(refusal("f 1 2 3\n"), HasSubstr("no vertices"));

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "io/staged_directory.hpp"
 #include "small_capture.hpp"
@@ -64,6 +65,63 @@ TEST(Capture, ImportanceIsFoundOrNamed) {
   EXPECT_EQ(openCapture(folder / "c").importance, folder / "c/albedo/e01.png");
   io::writeTextFile(folder / "c/capture.json", R"({"importance": 1})");
   EXPECT_THAT(failure(folder / "c"), HasSubstr("importance: expected a string"));
+}
+
+/// Keeps what is noted.
+class Notes : public Progress {
+ public:
+  void note(std::string_view message) override { all.emplace_back(message); }
+  std::vector<std::string> all;
+};
+
+TEST(Capture, MeshesAreFoundWhateverTheCaseOfTheirExtension) {
+  const test::TemporaryDirectory folder;
+  test::writeSmallCapture(folder / "c", {.expressions = 2, .width = 8, .height = 8});
+  fs::rename(folder / "c/neutral.obj", folder / "c/neutral.OBJ");
+  fs::create_directory(folder / "c/expressions");
+  fs::copy_file(folder / "c/neutral.OBJ", folder / "c/expressions/e00.OBJ");
+  fs::copy_file(folder / "c/neutral.OBJ", folder / "c/expressions/e01.obj");
+  Notes notes;
+  const Capture capture = openCapture(folder / "c", {}, &notes);
+  EXPECT_EQ(capture.neutral_mesh, folder / "c/neutral.OBJ");
+  EXPECT_THAT(capture.expression_meshes,
+              ElementsAre(folder / "c/expressions/e00.OBJ", folder / "c/expressions/e01.obj"));
+  EXPECT_THAT(notes.all, testing::IsEmpty());
+  fs::copy_file(folder / "c/neutral.OBJ", folder / "c/expressions/e01.OBJ");
+  EXPECT_THAT(failure(folder / "c"), HasSubstr("e01.OBJ and e01.obj"));
+}
+
+TEST(Capture, MeshesThatMatchNoExpressionAreNoted) {
+  const test::TemporaryDirectory folder;
+  test::writeSmallCapture(folder / "c", {.expressions = 3, .width = 8, .height = 8});
+  const auto notesWith = [&](const std::vector<std::string>& meshes) {
+    fs::remove_all(folder / "c/expressions");
+    fs::create_directory(folder / "c/expressions");
+    for (const std::string& mesh : meshes) fs::copy_file(folder / "c/neutral.obj", folder / "c/expressions" / mesh);
+    Notes notes;
+    openCapture(folder / "c", {}, &notes);
+    return notes.all;
+  };
+  EXPECT_THAT(notesWith({}), testing::IsEmpty());
+  EXPECT_THAT(notesWith({"e00.obj", "e01.obj", "e02.obj", "neutral.obj", "notes.txt"}), testing::IsEmpty());
+  EXPECT_THAT(notesWith({"e00.obj", "e01.obj"}), ElementsAre(HasSubstr("expressions: no mesh for e02 (")));
+  EXPECT_THAT(notesWith({"E00.obj", "e01.obj", "e02.obj"}),
+              ElementsAre(HasSubstr("expressions: E00.obj matches no expression; no mesh for e00 (")));
+  EXPECT_THAT(notesWith({"a0.obj", "a1.obj", "a2.obj", "a3.obj", "a4.obj", "a5.obj", "a6.obj", "a7.obj", "a8.obj",
+                         "a9.obj", "e00.obj", "e01.obj", "e02.obj"}),
+              ElementsAre(HasSubstr("a6.obj, a7.obj and 2 more match no expression (")));
+}
+
+TEST(Capture, FoldersThatCannotBeReadAreRefused) {
+  const test::TemporaryDirectory folder;
+  test::writeSmallCapture(folder / "c", {.expressions = 1, .width = 8, .height = 8});
+  fs::create_directory(folder / "c/expressions");
+  if (::geteuid() == 0) GTEST_SKIP() << "root reads every folder";
+  for (const char* name : {"c/expressions", "c/albedo", "c"}) {
+    fs::permissions(folder / name, fs::perms::none);
+    EXPECT_THAT(failure(folder / "c"), HasSubstr("Permission denied")) << name;
+    fs::permissions(folder / name, fs::perms::owner_all);
+  }
 }
 
 TEST(Capture, MapsCanBeChosen) {

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "capture/capture_json.hpp"
+#include "facezip/geometry/obj_io.hpp"
 #include "image/image_format.hpp"
 #include "package/package_json.hpp"
 #include "package/safe_names.hpp"
@@ -36,11 +37,27 @@ bool isImage(const fs::path& path) {
   return path.filename().string().front() != '.';
 }
 
+/// What a folder holds, by name.
+std::vector<fs::directory_entry> entriesOf(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::directory_entry> entries;
+  for (fs::directory_iterator entry(folder, error); !error && entry != fs::directory_iterator();
+       entry.increment(error)) {
+    entries.push_back(*entry);
+  }
+  if (error) {
+    throw InputError({folder.string(), "", "a folder that can be read", error.message(), "check its permissions"});
+  }
+  std::sort(entries.begin(), entries.end());
+  return entries;
+}
+
 /// Image files of a folder by stem. Two files with the same stem would be two textures of one expression.
 std::map<std::string, fs::path> imagesByName(const fs::path& folder) {
   std::map<std::string, fs::path> images;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    if (!entry.is_regular_file() || !isImage(entry.path())) continue;
+  for (const fs::directory_entry& entry : entriesOf(folder)) {
+    std::error_code ignored;
+    if (!entry.is_regular_file(ignored) || !isImage(entry.path())) continue;
     const auto [it, inserted] = images.emplace(entry.path().stem().string(), entry.path());
     if (inserted) continue;
     std::set<std::string> both = {it->second.filename().string(), entry.path().filename().string()};
@@ -60,9 +77,10 @@ struct FoundMap {
 
 std::map<std::string, FoundMap> findMaps(const fs::path& directory, const CaptureJson& description) {
   std::map<std::string, FoundMap> maps;
-  for (const fs::directory_entry& entry : fs::directory_iterator(directory)) {
+  for (const fs::directory_entry& entry : entriesOf(directory)) {
     const std::string name = entry.path().filename().string();
-    if (!entry.is_directory() || name.front() == '.') continue;
+    std::error_code ignored;
+    if (!entry.is_directory(ignored) || name.front() == '.') continue;
     const bool described = description.maps.contains(name);
     // A description is complete: folders that it does not name (renders, references) are not maps.
     if (!described && !description.maps.empty()) continue;
@@ -152,6 +170,53 @@ std::vector<std::string> chooseMaps(const fs::path& directory, const std::map<st
   return wanted.empty() ? names : wanted;
 }
 
+/// The expressions' meshes by name; the folder may be absent.
+std::map<std::string, fs::path> meshesByName(const fs::path& folder) {
+  std::map<std::string, fs::path> meshes;
+  std::error_code error;
+  if (!fs::exists(folder, error) && !error) return meshes;
+  for (const fs::path& file : geometry::objFiles(folder)) meshes.emplace(file.stem().string(), file);
+  return meshes;
+}
+
+/// "a, b, c and 9 more"
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t kMostListed = 8;
+  const std::size_t shown = names.size() > kMostListed + 1 ? kMostListed : names.size();
+  const std::string more = shown < names.size() ? fmt::format(" and {} more", names.size() - shown) : "";
+  return fmt::format("{}{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "), more);
+}
+
+/// Says which meshes stay unused and who lacks one: a misspelt name would otherwise go unnoticed.
+void noteUnmatchedMeshes(const fs::path& folder, const std::map<std::string, fs::path>& meshes,
+                         const std::vector<std::string>& expressions, Progress& progress) {
+  std::vector<std::string> unused, lacking;
+  for (const auto& [name, file] : meshes) {
+    const bool known = std::find(expressions.begin(), expressions.end(), name) != expressions.end();
+    if (!known && name != "neutral") unused.push_back(file.filename().string());
+  }
+  for (const std::string& name : expressions) {
+    if (!meshes.contains(name)) lacking.push_back(name);
+  }
+  std::string text;
+  if (!unused.empty()) {
+    text = fmt::format("{} match{} no expression", listed(unused), unused.size() == 1 ? "es" : "");
+  }
+  if (!lacking.empty() && !meshes.empty()) {
+    text += fmt::format("{}no mesh for {}", text.empty() ? "" : "; ", listed(lacking));
+  }
+  if (!text.empty()) progress.note(fmt::format("{}: {} (meshes are named as textures are)", folder.string(), text));
+}
+
+/// The mesh of the neutral: as capture.json names it, else neutral.obj, its extension in any case.
+fs::path neutralMesh(const fs::path& directory, const CaptureJson& description) {
+  if (!description.neutral_mesh.empty()) return directory / description.neutral_mesh;
+  for (const fs::path& file : geometry::objFiles(directory)) {
+    if (file.stem() == "neutral") return file;
+  }
+  return directory / "neutral.obj";
+}
+
 std::optional<fs::path> optionalFile(const fs::path& directory, const std::string& named, const std::string& usual) {
   if (!named.empty()) return directory / named;  // named in capture.json: a missing one is an error when it is read
   std::error_code error;
@@ -171,7 +236,7 @@ std::string nameOf(const fs::path& directory) {
 
 }  // namespace
 
-Capture openCapture(const fs::path& directory, const std::vector<std::string>& map_names) {
+Capture openCapture(const fs::path& directory, const std::vector<std::string>& map_names, Progress* progress) {
   std::error_code error;
   if (!fs::is_directory(directory, error)) {
     throw InputError({directory.string(), "", "a capture directory",
@@ -184,7 +249,7 @@ Capture openCapture(const fs::path& directory, const std::vector<std::string>& m
   capture.directory = directory;
   capture.name = description.name.empty() ? nameOf(directory) : description.name;
   capture.unit = description.unit;
-  capture.neutral_mesh = directory / (description.neutral_mesh.empty() ? "neutral.obj" : description.neutral_mesh);
+  capture.neutral_mesh = neutralMesh(directory, description);
   if (!fs::exists(capture.neutral_mesh, error)) {
     throw InputError({capture.neutral_mesh.string(), "", "the mesh of the neutral", "no such file", ""});
   }
@@ -196,10 +261,12 @@ Capture openCapture(const fs::path& directory, const std::vector<std::string>& m
   }
   capture.expressions = expressionNames(directory, description, used);
   for (const std::string& name : chosen) capture.maps.push_back(makeMap(name, used.at(name), capture.expressions));
+  const std::map<std::string, fs::path> meshes = meshesByName(directory / "expressions");
   for (const std::string& name : capture.expressions) {
-    const fs::path mesh = directory / "expressions" / (name + ".obj");
-    capture.expression_meshes.push_back(fs::exists(mesh, error) ? mesh : fs::path());
+    const auto mesh = meshes.find(name);
+    capture.expression_meshes.push_back(mesh != meshes.end() ? mesh->second : fs::path());
   }
+  if (progress != nullptr) noteUnmatchedMeshes(directory / "expressions", meshes, capture.expressions, *progress);
   capture.face_region = optionalFile(directory, description.face_region, "face_region.txt");
   capture.coverage = optionalFile(directory, description.coverage, "coverage.png");
   capture.importance = optionalFile(directory, description.importance, "importance.png");

@@ -16,19 +16,11 @@ namespace {
 
 bool isNeutral(const std::string& name) { return name == "neutral" || name == "generic_neutral"; }
 
-std::vector<fs::path> objFiles(const fs::path& directory) {
+std::vector<fs::path> templateFiles(const fs::path& directory) {
   std::error_code error;
-  if (!fs::is_directory(directory, error)) {
-    throw InputError({directory.string(), "template", "a directory with neutral.obj and an OBJ file for each shape",
-                      fs::exists(directory, error) ? "a file" : "no such directory", ""});
-  }
-  std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(directory)) {
-    const bool hidden = entry.path().filename().string().front() == '.';
-    if (entry.is_regular_file() && entry.path().extension() == ".obj" && !hidden) files.push_back(entry.path());
-  }
-  std::sort(files.begin(), files.end());
-  return files;
+  if (fs::is_directory(directory, error)) return geometry::objFiles(directory);
+  throw InputError({directory.string(), "template", "a directory with neutral.obj and an OBJ file for each shape",
+                    fs::exists(directory, error) ? "a file" : "no such directory", ""});
 }
 
 void requireName(const std::string& name, const fs::path& file) {
@@ -41,7 +33,7 @@ void requireName(const std::string& name, const fs::path& file) {
 RigTemplate readTemplate(const fs::path& directory) {
   RigTemplate found;
   std::vector<fs::path> shape_files;
-  for (const fs::path& file : objFiles(directory)) {
+  for (const fs::path& file : templateFiles(directory)) {
     if (!isNeutral(file.stem().string())) {
       requireName(file.stem().string(), file);
       found.names.push_back(file.stem().string());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "facezip/geometry/mesh.hpp"
 
@@ -15,6 +16,10 @@ namespace facezip::geometry {
 /// Throws InputError with the file and the line: missing or unreadable file; no vertices or no faces; a coordinate that
 /// is missing or not a finite number; a face of fewer than three corners; an index out of range; mixed faces.
 TriangleMesh readObj(const std::filesystem::path& file);
+
+/// The OBJ files of a folder by name, ".obj" in any case; hidden files are left out. Throws InputError for a folder
+/// that cannot be read and for two files that differ in the case of the extension alone.
+std::vector<std::filesystem::path> objFiles(const std::filesystem::path& folder);
 
 /// Writes v, vt and f lines (f v/vt, or f v without uvs) with the shortest decimals that give back the same doubles.
 /// An existing file is overwritten. Throws OutputError if the file cannot be opened or the disk does not take it all.

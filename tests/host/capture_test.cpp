@@ -166,7 +166,9 @@ TEST(Capture, MalformedDescriptionNamesTheField) {
   EXPECT_THAT(with("[]"), HasSubstr("an object"));
   EXPECT_THAT(with(R"({"unit": 3})"), HasSubstr("unit: expected a string"));
   EXPECT_THAT(with(R"({"maps": {"albedo": {"weight": -1}}})"), HasSubstr("maps.albedo.weight"));
-  EXPECT_THAT(with(R"({"maps": {"albedo": 3}})"), HasSubstr("maps.albedo"));
+  EXPECT_THAT(with(R"({"maps": {"albedo": 3}})"), HasSubstr("maps.albedo: "));
+  EXPECT_THAT(with(R"({"maps": {"foo": {}}})"),
+              testing::AllOf(HasSubstr("c/foo: map \"foo\""), HasSubstr("no such folder")));
   EXPECT_THAT(with(R"({"expressions": "e00"})"), HasSubstr("expressions: expected an array"));
   EXPECT_THAT(with(R"({"expressions": [3]})"), HasSubstr("expressions[0]: expected a string"));
   EXPECT_THAT(with(R"({"maps": {"albedo": {"expressions": {"e00": 3}}}})"),

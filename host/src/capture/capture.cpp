@@ -98,6 +98,15 @@ std::map<std::string, FoundMap> findMaps(const fs::path& directory, const Captur
   return maps;
 }
 
+/// A map that capture.json names may have no folder, or an empty one.
+void requireTextures(const std::string& name, const FoundMap& map) {
+  if (!map.images.empty()) return;
+  std::error_code error;
+  throw InputError({map.folder.string(), fmt::format("map \"{}\"", name), "a folder of textures",
+                    fs::exists(map.folder, error) ? "no image in it" : "no such folder",
+                    "add the textures, or take the map out of capture.json"});
+}
+
 void requireUnique(const std::vector<std::string>& names, const fs::path& file) {
   std::set<std::string> seen;
   for (const std::string& name : names) {
@@ -256,6 +265,7 @@ Capture openCapture(const fs::path& directory, const std::vector<std::string>& m
   const std::vector<std::string> chosen = chooseMaps(directory, found, map_names);
   std::map<std::string, FoundMap> used;
   for (const std::string& name : chosen) {
+    requireTextures(name, found.at(name));
     used[name] = found.at(name);
     requireName(name, "map", used[name].source);
   }

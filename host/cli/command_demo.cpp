@@ -25,6 +25,7 @@ struct Arguments {
 
 void runDemo(const Arguments& arguments, Progress& progress) {
   const fs::path output = arguments.output;
+  if (output.empty()) throw InputError({"--output", "", "a name", "an empty one", ""});
   const Device device = openDevice(arguments.device, &progress);
   fmt::print("1. facezip synth --output {}\n", (output / "capture").string());
   synthesizeCapture(output / "capture", arguments.synth, progress);

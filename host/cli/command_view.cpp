@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "commands.hpp"
 #include "facezip/view.hpp"
@@ -14,15 +15,15 @@ namespace {
 
 struct Arguments {
   std::string package;
-  std::string output;
+  std::optional<std::string> output;
   int port = 8080;
 };
 
 void view(const Arguments& arguments, Progress& progress) {
   const Package package = Package::open(arguments.package);
-  if (!arguments.output.empty()) {
-    writeViewer(package, arguments.output);
-    fmt::print("Look at {}\n", (std::filesystem::path(arguments.output) / "index.html").string());
+  if (arguments.output) {
+    writeViewer(package, *arguments.output);
+    fmt::print("Look at {}\n", (std::filesystem::path(*arguments.output) / "index.html").string());
     return;
   }
   const auto started = [](int port) {

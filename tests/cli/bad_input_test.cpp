@@ -260,6 +260,19 @@ TEST_F(BadInput, UnknownUnitLengthAndSize) {
   expectFailure(cli::kExitInput, {"--memory", "10 MiB"}, "--unit m --mask-radius 5cm --memory 10MiB");
 }
 
+TEST_F(BadInput, OutputsWithoutAName) {
+  ASSERT_EQ(compress().exit_code, cli::kExitSuccess);
+  const std::string face = quoted(package());
+  for (const std::string& command :
+       {"compress " + quoted(capture()) + kOptions, std::string("synth --resolution 64"), std::string("demo"),
+        "reconstruct " + face, "blend " + face + " --weights e00=1", "export " + face + " --target gltf",
+        "view " + face, "report " + quoted(capture()) + " " + face}) {
+    const test::CommandResult result = runFacezip(command + " --output ''");
+    EXPECT_EQ(result.exit_code, cli::kExitInput) << command << ": " << result.error;
+    EXPECT_THAT(result.error, HasSubstr("--output: expected a")) << command;
+  }
+}
+
 TEST_F(BadInput, NoOpenClDevice) {
   fs::create_directory(folder_ / "no-drivers");
   expectFailure(cli::kExitDevice, {"no OpenCL device found", "install"}, kOptions,

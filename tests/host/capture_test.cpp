@@ -177,7 +177,7 @@ TEST(Capture, MalformedDescriptionNamesTheField) {
   EXPECT_THAT(with(std::string(1000, '[')), HasSubstr("nested"));
   fs::remove(folder / "c/capture.json");
   fs::create_directory(folder / "c/capture.json");
-  EXPECT_THAT(failure(folder / "c"), HasSubstr("a folder"));
+  EXPECT_THAT(failure(folder / "c"), HasSubstr("capture.json: expected the description of a capture, got a folder"));
 }
 
 // What a package cannot hold is found before the work, and blamed on the capture.

@@ -1,6 +1,7 @@
 // Packages that are not as facezip writes them: refused by file and field.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <functional>
 #include <limits>
@@ -42,6 +43,17 @@ TEST(Package, MissingDirectoryAndDescriptionAreNamed) {
   EXPECT_THAT(messageOfOpening(folder.path()), HasSubstr("package.json"));
   fs::create_directory(folder / "package.json");
   EXPECT_THAT(messageOfOpening(folder.path()), HasSubstr("package.json"));
+}
+
+TEST(Package, UnreadableFolderIsNotCalledMissing) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root reads every folder";
+  const test::TemporaryDirectory folder;
+  SamplePackage sample = makeSample({{}}, 2, 1);
+  test::writeSample(sample, folder / "package");
+  fs::permissions(folder / "package", fs::perms::none);
+  EXPECT_THAT(messageOfOpening(folder / "package"), HasSubstr("Permission denied"));
+  EXPECT_THAT(messageOfOpening(folder / "package/package.json"), HasSubstr("Permission denied"));
+  fs::permissions(folder / "package", fs::perms::owner_all);
 }
 
 TEST(PackageJson, TruncatedAtEveryLengthIsRefused) {

@@ -31,7 +31,7 @@ CaptureJson::Map readMap(const JsonField& field) {
 
 std::optional<CaptureJson> readCaptureJson(const fs::path& file) {
   std::error_code error;
-  if (!fs::exists(file, error)) return std::nullopt;
+  if (!fs::exists(file, error) && !error) return std::nullopt;
   const nlohmann::json json =
       package::parseJson(io::readFile(file, "the description of a capture"), file.string(), kCure);
   const JsonField root(json, file.string(), "", kCure);

@@ -15,7 +15,9 @@ namespace fs = std::filesystem;
 
 std::string readFile(const fs::path& file, const std::string& expected, const std::string& cure, std::uintmax_t most) {
   std::error_code error;
-  if (!fs::exists(file, error)) throw InputError({file.string(), "", expected, "no such file", cure});
+  if (!fs::exists(file, error)) {
+    throw InputError({file.string(), "", expected, error ? error.message() : "no such file", cure});
+  }
   if (fs::is_directory(file, error)) throw InputError({file.string(), "", expected, "a folder", cure});
   const std::uintmax_t bytes = fs::file_size(file, error);  // a pipe has no size
   if (!error && bytes > most) {

@@ -22,6 +22,11 @@ namespace {
 
 std::string errnoText() { return std::strerror(errno); }
 
+fs::path absoluteTarget(const fs::path& target) {
+  if (target.empty()) throw InputError({"--output", "", "a name", "an empty one", ""});
+  return fs::absolute(target);
+}
+
 /// "/a/b" for "/a/b/" too, so that the name of the directory is never empty.
 fs::path withoutTrailingSlash(fs::path path) {
   path = path.lexically_normal();
@@ -46,8 +51,7 @@ void forEachFile(const fs::path& directory, const Visit& visit) {
 
 /// The directory that `target` is, or is a link to.
 fs::path directoryOf(const fs::path& target) {
-  if (target.empty()) throw OutputError("--output", "no directory is named");
-  const fs::path path = withoutTrailingSlash(fs::absolute(target));
+  const fs::path path = withoutTrailingSlash(absoluteTarget(target));
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (fs::exists(status) && !fs::is_directory(status)) {
@@ -199,7 +203,7 @@ void writeTextFile(const fs::path& path, const std::string& text) {
 
 fs::path fileToReplace(const fs::path& path) {
   std::error_code error;
-  const fs::path absolute = fs::absolute(path);
+  const fs::path absolute = absoluteTarget(path);
   const fs::file_status status = fs::status(absolute, error);
   if (fs::exists(status) && !fs::is_regular_file(status)) return {};
   return fs::is_symlink(fs::symlink_status(absolute, error)) ? fs::weakly_canonical(absolute) : absolute;

@@ -29,7 +29,8 @@ std::size_t PackageMap::frameBytes() const {
 
 Package Package::open(const fs::path& directory) {
   Package package;
-  package.directory_ = directory.filename() == package::kDescriptionFile && !fs::is_directory(directory)
+  std::error_code ignored;
+  package.directory_ = directory.filename() == package::kDescriptionFile && !fs::is_directory(directory, ignored)
                            ? directory.parent_path()
                            : directory;
   const fs::path file = package.directory_ / package::kDescriptionFile;

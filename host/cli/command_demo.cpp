@@ -58,7 +58,7 @@ void addDemoCommand(CLI::App& app, const CommonOptions& common) {
       ->capture_default_str();
   command->add_option("--resolution", arguments->synth.resolution, "Side of the textures in texels")
       ->capture_default_str();
-  command->add_option("--seed", arguments->synth.seed, "Seed of the face")->capture_default_str();
+  addSeedOption(*command, arguments->synth.seed, "Seed of the face");
   addDeviceOption(*command, arguments->device);
   command->callback([arguments, &common] {
     TerminalProgress progress(common.quiet);

@@ -37,6 +37,9 @@ void report(const Arguments& arguments, Progress& progress) {
   if (std::filesystem::path(arguments.output).extension() != ".html") {
     throw InputError({"--output", "", "a file name that ends in .html", arguments.output, ""});
   }
+  for (const int masks : arguments.mask_sweep) {
+    if (masks < 1) throw InputError({"--mask-sweep", "", "numbers of at least 1", fmt::format("{}", masks), ""});
+  }
   std::string compressed;
   if (!arguments.compress_report.empty()) compressed = readCompressReport(arguments.compress_report);
   EvaluateOptions options;
@@ -70,7 +73,6 @@ void addReportCommand(CLI::App& app, const CommonOptions& common) {
       ->add_option("--mask-sweep", arguments->mask_sweep,
                    "Numbers of masks to compress with and to plot: 8,16,32,64. Two compressions each")
       ->delimiter(',')
-      ->check(CLI::PositiveNumber)
       ->type_name("K,...");
   command->add_option("--compress-report", arguments->compress_report, "What `facezip compress --report` wrote")
       ->type_name("FILE.json");

@@ -67,7 +67,6 @@ void addRigCommand(CLI::App& app, const CommonOptions& common) {
           ->add_option("--texture-damping", arguments->texture_damping,
                        "lambda of local and damped (default: local: what predicts each expression best from the "
                        "others; damped: 0.3)")
-          ->check(CLI::PositiveNumber)
           ->type_name("NUMBER");
   addMapsOption(*command, arguments->maps, "Maps to take (default: all)");
   addCompressOptions(*command, arguments->compress);

@@ -58,7 +58,6 @@ void addSolveWeightsCommand(CLI::App& app, const CommonOptions& common) {
   command
       ->add_option("--smoothing", arguments->options.smoothing,
                    "Pull between the weights of neighbouring frames, 0: none; 0.01 is light")
-      ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_flag("--head-motion", arguments->options.head_motion,
                     "The head moves in the meshes: take its rigid motion out of each frame");

@@ -22,7 +22,7 @@ void addSynthCommand(CLI::App& app, const CommonOptions& common) {
       ->capture_default_str();
   command->add_option("--expressions", arguments->options.expressions, "Number of expressions")->capture_default_str();
   addMapsOption(*command, arguments->options.maps, "Maps to make: albedo, normal, specular, roughness, displacement");
-  command->add_option("--seed", arguments->options.seed, "Seed of the face")->capture_default_str();
+  addSeedOption(*command, arguments->options.seed, "Seed of the face");
   command->add_flag("--template", arguments->options.rig_template,
                     "Also DIR/template, the single actions of another head, and DIR/weights.json, for facezip rig");
   command->callback([arguments, &common] {

@@ -26,6 +26,13 @@ std::uint64_t parseBytes(const std::string& option, const std::string& text) {
   return static_cast<std::uint64_t>(number * factor->second);
 }
 
+std::uint64_t parseSeed(const std::string& option, const std::string& text) {
+  std::uint64_t seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  if (error == std::errc() && end == text.data() + text.size()) return seed;
+  throw InputError({option, "", "a whole number from 0 to 18446744073709551615", text, ""});
+}
+
 std::string formatMegabytes(std::uint64_t bytes) { return fmt::format("{:.2f} MB", static_cast<double>(bytes) / 1e6); }
 
 }  // namespace facezip::cli

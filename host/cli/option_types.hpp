@@ -9,6 +9,9 @@ namespace facezip::cli {
 /// "2GiB", "512MiB", "2GB", "1000000": a number of bytes. Throws InputError naming `option`.
 std::uint64_t parseBytes(const std::string& option, const std::string& text);
 
+/// A whole number from 0 to 2^64 - 1. Throws InputError naming `option`.
+std::uint64_t parseSeed(const std::string& option, const std::string& text);
+
 /// 1234567 as "1.23 MB" (decimal, as the paper's tables count).
 std::string formatMegabytes(std::uint64_t bytes);
 

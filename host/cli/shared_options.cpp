@@ -34,6 +34,15 @@ void addMemoryOption(CLI::App& command, std::string& memory) {
       ->capture_default_str();
 }
 
+void addSeedOption(CLI::App& command, std::uint64_t& seed, const std::string& description) {
+  // As text: CLI11 takes -1 for 2^64 - 1, and what is larger for the same.
+  command
+      .add_option_function<std::string>(
+          "--seed", [&seed](const std::string& text) { seed = parseSeed("--seed", text); }, description)
+      ->type_name("UINT")
+      ->default_str(std::to_string(seed));
+}
+
 void addMapsOption(CLI::App& command, std::vector<std::string>& maps, const std::string& description) {
   command.add_option("--maps", maps, description)->type_name("NAME,...")->delimiter(',');
 }
@@ -71,9 +80,7 @@ void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
                       "Distance between mask samples: 3cm, 0.03m; a bare number is in the mesh's unit")
           ->type_name("LENGTH")
           ->capture_default_str();
-  command.add_option("--masks", arguments.masks, "Number of masks, instead of their distance")
-      ->excludes(radius)
-      ->check(CLI::PositiveNumber);
+  command.add_option("--masks", arguments.masks, "Number of masks, instead of their distance")->excludes(radius);
   command.add_option("--mask-cutoff", options.mask_cutoff, "Mask weights below this are cut")->capture_default_str();
   command
       .add_option("--permutation-solver", arguments.permutation_solver,
@@ -84,7 +91,7 @@ void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
       ->capture_default_str();
   command.add_option("--cluster-restarts", options.cluster_restarts, "Random starts of the clustering of each mask")
       ->capture_default_str();
-  command.add_option("--seed", options.seed, "Seed of every random choice")->capture_default_str();
+  addSeedOption(command, options.seed, "Seed of every random choice");
   command.add_option("--unit", arguments.unit, "Unit of the meshes (mm, cm, m, in, ...), over what the capture states")
       ->type_name("UNIT");
   command
@@ -95,10 +102,8 @@ void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
       .add_option("--importance", options.importance,
                   "Painted image of where errors matter more (default: the capture's importance.png), or none")
       ->type_name("FILE");
-  command
-      .add_option("--gutter", arguments.gutter,
-                  "Texels around UV islands that get masks too (default: 1/64 of the side, at least 16)")
-      ->check(CLI::NonNegativeNumber);
+  command.add_option("--gutter", arguments.gutter,
+                     "Texels around UV islands that get masks too (default: 1/64 of the side, at least 16)");
   command.add_flag("!--no-mesh", options.mesh, "Leave the meshes out of the package: no viewer, no exports");
   addMemoryOption(command, arguments.memory);
 }
@@ -114,8 +119,8 @@ CompressOptions parseCompressOptions(const CompressArguments& arguments) {
   }
   options.target_rmse = arguments.target_rmse;
   if (!arguments.budget.empty()) options.budget_bytes = parseBytes("--budget", arguments.budget);
-  if (arguments.masks > 0) options.masks = arguments.masks;
-  if (arguments.gutter >= 0) options.gutter = arguments.gutter;
+  options.masks = arguments.masks;
+  options.gutter = arguments.gutter;
   if (!arguments.unit.empty()) {
     try {
       geometry::parseUnit(arguments.unit);

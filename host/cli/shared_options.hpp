@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,8 @@ namespace facezip::cli {
 void addDeviceOption(CLI::App& command, std::string& selector);
 /// --memory, as text for parseBytes()
 void addMemoryOption(CLI::App& command, std::string& memory);
+/// --seed; `seed` must outlive the parsing
+void addSeedOption(CLI::App& command, std::uint64_t& seed, const std::string& description);
 /// --maps a,b
 void addMapsOption(CLI::App& command, std::vector<std::string>& maps, const std::string& description);
 
@@ -22,12 +25,12 @@ struct CompressArguments {
   std::string method = "refined";
   std::string permutation_solver = "best";
   std::string mask_radius = "3cm";
-  int masks = 0;
+  std::optional<int> masks;
   std::optional<double> target_rmse;
   std::string budget;
   std::string unit;
   std::string memory = "2GiB";
-  int gutter = -1;
+  std::optional<int> gutter;
   CompressOptions options;
 };
 void addCompressOptions(CLI::App& command, CompressArguments& arguments);

@@ -260,6 +260,24 @@ TEST_F(BadInput, UnknownUnitLengthAndSize) {
   expectFailure(cli::kExitInput, {"--memory", "10 MiB"}, "--unit m --mask-radius 5cm --memory 10MiB");
 }
 
+TEST_F(BadInput, NumbersOutOfRange) {
+  for (const char* value : {"-1", "99999999999999999999", "1.5", "one"}) {
+    expectFailure(cli::kExitInput, {"--seed: expected a whole number from 0", value}, std::string("--seed ") + value);
+  }
+  expectFailure(cli::kExitInput, {"--masks: expected at least 1, got 0"}, "--unit m --masks 0");
+  for (const char* value : {"-1", "2147483647"}) {
+    expectFailure(cli::kExitInput, {"--gutter: expected 0 to 1024, got ", value},
+                  std::string("--unit m --gutter ") + value);
+  }
+  const test::CommandResult synth = runFacezip("synth --seed -1 --output " + quoted(folder_ / "s"));
+  EXPECT_EQ(synth.exit_code, cli::kExitInput);
+  EXPECT_THAT(synth.error, HasSubstr("--seed"));
+  EXPECT_EQ(runFacezip("demo --seed -1 --output " + quoted(folder_ / "s")).exit_code, cli::kExitInput);
+  const test::CommandResult sweep = runFacezip("report a b --output c.html --mask-sweep 8,0");
+  EXPECT_EQ(sweep.exit_code, cli::kExitInput);
+  EXPECT_THAT(sweep.error, HasSubstr("--mask-sweep: expected numbers of at least 1, got 0"));
+}
+
 TEST_F(BadInput, OutputsWithoutAName) {
   ASSERT_EQ(compress().exit_code, cli::kExitSuccess);
   const std::string face = quoted(package());

@@ -162,6 +162,11 @@ TEST_F(RigBadInput, OptionsOutOfRange) {
   const test::CommandResult iterations = runFacezip(command + "--iterations -1");
   EXPECT_EQ(iterations.exit_code, cli::kExitInput);
   EXPECT_THAT(iterations.error, HasSubstr("--iterations"));
+  for (const char* value : {"0", "1e300"}) {
+    const test::CommandResult damping = runFacezip(command + "--texture-damping " + value);
+    EXPECT_EQ(damping.exit_code, cli::kExitInput) << value;
+    EXPECT_THAT(damping.error, HasSubstr("--texture-damping: expected above 0 and at most 1e6, got "));
+  }
   EXPECT_EQ(runFacezip(command + "--texture-solve magic").exit_code, cli::kExitUsage);
   EXPECT_FALSE(fs::exists(package()));
 }
@@ -274,7 +279,11 @@ TEST_F(RigBadInput, SolvingWeightsSaysWhatIsWrong) {
   geometry::writeObj(folder_ / "other.obj", test::gridMesh(9));
   EXPECT_THAT(solve(package(), folder_ / "other.obj").error, HasSubstr("number of vertices"));
   EXPECT_EQ(solve(package(), folder_ / "none.obj").exit_code, cli::kExitInput);
-  EXPECT_EQ(solve(package(), good, "--smoothing -1").exit_code, cli::kExitUsage);
+  for (const char* value : {"-1", "1e300"}) {
+    const test::CommandResult result = solve(package(), good, std::string("--smoothing ") + value);
+    EXPECT_EQ(result.exit_code, cli::kExitInput) << value;
+    EXPECT_THAT(result.error, HasSubstr("--smoothing: expected 0 to 1e6, got "));
+  }
   io::writeTextFile(package() / "rig.json", "{\"format\": \"facezip-rig\", \"version\": 7}");
   EXPECT_THAT(solve(package(), good).error, HasSubstr("version"));
   EXPECT_FALSE(fs::exists(folder_ / "clip.csv"));

@@ -98,7 +98,8 @@ class Rigging {
       throw InputError({"--iterations", "", "0 to 1000", fmt::format("{}", options_.fit.iterations), ""});
     }
     if (options_.texture_damping && !(*options_.texture_damping > 0.0 && *options_.texture_damping <= 1e6)) {
-      throw InputError({"--texture-damping", "", "above 0", fmt::format("{}", *options_.texture_damping), ""});
+      throw InputError(
+          {"--texture-damping", "", "above 0 and at most 1e6", fmt::format("{}", *options_.texture_damping), ""});
     }
     progress_.stage("reading the template", 0);
     template_ = readTemplate(template_directory_);

@@ -140,7 +140,7 @@ SolvedClip solveWeights(const fs::path& package, const std::vector<fs::path>& me
                         const SolveWeightsOptions& options, Progress& progress) {
   if (meshes.empty()) throw InputError({"meshes", "", "at least one OBJ file", "none", ""});
   if (!(options.smoothing >= 0.0 && options.smoothing <= 1e6)) {
-    throw InputError({"--smoothing", "", "0 or more", fmt::format("{}", options.smoothing), ""});
+    throw InputError({"--smoothing", "", "0 to 1e6", fmt::format("{}", options.smoothing), ""});
   }
   const Rig rig = openRig(package);
   const LoadedRig loaded = load(rig);

@@ -89,6 +89,17 @@ TEST_F(Gains, OfExpressionsMultiplyTheirWeights) {
   EXPECT_EQ(frame({0.0f, 0.25f, 0.0f, 0.0f, 0.5f}, &gain), frame({0.0f, 0.5f, 0.0f, 0.0f, 0.5f}, nullptr));
 }
 
+TEST_F(Gains, WhatAPresetDoesNotNameStaysAsItIs) {
+  json expressions = preset();
+  expressions.erase("regions");
+  EXPECT_THAT(readGain(write(expressions), open()).expressions, testing::ElementsAre(1, 2, 1, 1, 1));
+  json regions = preset();
+  regions.erase("expressions");
+  const Gain gain = readGain(write(regions), open());
+  EXPECT_THAT(gain.expressions, Each(1.0f));
+  EXPECT_THAT(gain.regions, testing::ElementsAre(0.5f, 1.0f));
+}
+
 TEST_F(Gains, OfARegionActInItAlone) {
   Gain gain = unitGain(open());
   gain.regions = {0.0f, 1.0f};
@@ -123,6 +134,10 @@ TEST_F(Gains, BadPresetsSayWhatIsWrong) {
   json format = preset();
   format["format"] = "facezip-package";
   EXPECT_THAT(messageOf(format), HasSubstr("preset of gains"));
+  json incomplete = preset();
+  incomplete.erase("version");
+  EXPECT_THAT(messageOf(incomplete),
+              testing::AllOf(HasSubstr("version: got no such field"), HasSubstr("preset of gains")));
   EXPECT_THROW(readGain(folder_ / "nowhere.json", open()), InputError);
 }
 

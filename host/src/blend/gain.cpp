@@ -17,11 +17,15 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kLargestGain = 16.0;
+constexpr const char* kCure = "is this a preset of gains, as `facezip view` saves it?";
 constexpr std::uintmax_t kLargestFile = 16u << 20;
 
-void requirePresetOf(const package::JsonField& document, const Package& package) {
+void requirePresetOf(const package::JsonField& document, const Package& package, const fs::path& file) {
+  for (const char* field : {"format", "version", "package"}) {
+    if (!document.has(field)) throw InputError({file.string(), field, "", "no such field", kCure});
+  }
   const package::JsonField format = document["format"];
-  if (format.text() != "facezip-gains") format.fail("\"facezip-gains\"", format.got(), "is this a preset of gains?");
+  if (format.text() != "facezip-gains") format.fail("\"facezip-gains\"", format.got(), kCure);
   document["version"].integer(1, 1);
   const package::JsonField name = document["package"];
   if (name.text() != package.name()) {
@@ -112,12 +116,14 @@ Gain readGain(const fs::path& file, const Package& package) {
   const nlohmann::json json =
       package::parseJson(io::readFile(file, "a preset that `facezip view` saved", "", kLargestFile), file.string());
   const package::JsonField document(json, file.string(), "");
-  requirePresetOf(document, package);
+  requirePresetOf(document, package, file);
   Gain gain = unitGain(package);
-  readFactors(document["expressions"], package.expressions(), "expression", gain.expressions);
+  if (document.has("expressions")) {
+    readFactors(document["expressions"], package.expressions(), "expression", gain.expressions);
+  }
   std::vector<std::string> regions;
   for (const PackageRegion& region : package.description().regions) regions.push_back(region.name);
-  readFactors(document["regions"], regions, "region", gain.regions);
+  if (document.has("regions")) readFactors(document["regions"], regions, "region", gain.regions);
   applyRegions(package, gain);
   return gain;
 }

@@ -50,8 +50,11 @@ TEST(ParseWeights, ReadsPairsAndQuotesWhatItCannot) {
   EXPECT_EQ(parseWeights(" smile = 0.7 ,jawOpen=-2e-1"), (Pairs{{"smile", 0.7f}, {"jawOpen", -0.2f}}));
   EXPECT_EQ(parseWeights("a=b=1"), (Pairs{{"a=b", 1.0f}}));
   EXPECT_TRUE(parseWeights("  ").empty());
-  for (const char* text :
-       {"smile", "smile=", "=1", "smile=x", "smile=1,", "smile=1 2", "smile=nan", "smile=1e99", "smile=0,7"}) {
+  // What is too small for a float is not too strange for a weight.
+  EXPECT_EQ(parseWeights("a=1e-50,b=-1e-50,c=1e-400,d=1e-40"),
+            (Pairs{{"a", 0.0f}, {"b", 0.0f}, {"c", 0.0f}, {"d", 1e-40f}}));
+  for (const char* text : {"smile", "smile=", "=1", "smile=x", "smile=1,", "smile=1 2", "smile=nan", "smile=1e99",
+                           "smile=1e999", "smile=-1e39", "smile=0,7"}) {
     EXPECT_THROW(parseWeights(text), InputError) << text;
   }
 }

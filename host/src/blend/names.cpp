@@ -62,12 +62,29 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
+namespace {
+
+/// A number that is out of a float's range: 0 or the nearest denormal where it is too small, none where it is too
+/// large.
+std::optional<float> roundTiny(std::string_view text) {
+  double value = 0.0;
+  if (std::from_chars(text.data(), text.data() + text.size(), value).ec == std::errc()) {
+    return std::abs(value) < 1.0 ? std::optional(static_cast<float>(value)) : std::nullopt;
+  }
+  const bool tiny = text.find("e-") != std::string_view::npos || text.find("E-") != std::string_view::npos;
+  return tiny ? std::optional(0.0f) : std::nullopt;
+}
+
+}  // namespace
+
 std::optional<float> parseNumber(std::string_view text) {
   text = trimmed(text);
   if (text.starts_with('+')) text.remove_prefix(1);
   float value = 0.0f;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  if (end != text.data() + text.size()) return std::nullopt;
+  if (error == std::errc::result_out_of_range) return roundTiny(text);
+  if (error != std::errc() || !std::isfinite(value)) return std::nullopt;
   return value;
 }
 

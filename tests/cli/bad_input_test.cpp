@@ -126,6 +126,7 @@ TEST_F(BadInput, UnreadableTexture) {
 TEST_F(BadInput, TruncatedTexture) {
   fs::resize_file(capture() / "albedo/e02.png", fs::file_size(capture() / "albedo/e02.png") / 2);
   expectFailure(cli::kExitInput, {"e02.png", "truncated"});
+  EXPECT_EQ(compress().error.find("facezip: error: "), 0u) << "a line of libpng before";
 }
 
 TEST_F(BadInput, NaNInAFloatTexture) {

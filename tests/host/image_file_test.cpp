@@ -170,6 +170,23 @@ TEST(ImageReader, TruncatedPngNamesTheFile) {
   }
 }
 
+TEST(ImageReader, APngCutAnywhereIsNamedOnce) {
+  const test::TemporaryDirectory folder;
+  image::writeImage(folder / "a.png", ramp(64, 64, 3, image::SampleType::kUint8));
+  const std::string whole = test::contentsOf(folder / "a.png");
+  for (std::size_t length = 8; length < whole.size() - 16; length += 7) {
+    std::ofstream(folder / "b.png", std::ios::binary) << whole.substr(0, length);
+    testing::internal::CaptureStderr();  // libpng prints
+    try {
+      image::readImage(folder / "b.png");
+      ADD_FAILURE() << length;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("truncated"), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << length;
+  }
+}
+
 TEST(ImageReader, NoByteOfAPngIsDamagedUnnoticed) {
   const test::TemporaryDirectory folder;
   const image::Image image = ramp(21, 13, 3, image::SampleType::kUint8);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <sstream>
 #include <utility>
 
 #include "facezip/error.hpp"
@@ -37,11 +38,15 @@ SampleType sampleType(const OIIO::TypeDesc& format) {
   }
 }
 
-/// OpenImageIO's text, without its line ends and never empty.
-std::string reason(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  while (!text.empty() && text.back() == ' ') text.pop_back();
-  return text.empty() ? "OpenImageIO gives no reason" : text;
+/// OpenImageIO's text in one line that is never empty. It may hold the same words again, in longer sentences.
+std::string reason(const std::string& text) {
+  std::string line;
+  std::istringstream lines(text);
+  for (std::string next; std::getline(lines, next);) {
+    if (next.find(line) != std::string::npos) line.clear();
+    if (line.find(next) == std::string::npos) line += (line.empty() ? "" : "; ") + next;
+  }
+  return line.empty() ? "OpenImageIO gives no reason" : line;
 }
 
 std::unique_ptr<OIIO::ImageInput> openInput(const fs::path& path) {
@@ -110,7 +115,7 @@ class OiioInput : public SampleInput {
 
   [[noreturn]] void damaged(int begin, int end) const {
     throw InputError({path_.string(), fmt::format("rows {} to {}", begin, end - 1), "readable image data",
-                      reason(file_->geterror()), "the file is truncated or damaged: export it again"});
+                      reason(file_->geterror()), "the file is truncated or damaged: replace it"});
   }
 
   fs::path path_;

@@ -2,6 +2,7 @@
 #include <spng.h>
 #include <zlib.h>
 
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -24,6 +25,28 @@ struct FreeContext {
   void operator()(spng_ctx* context) const { spng_ctx_free(context); }
 };
 using Context = std::unique_ptr<spng_ctx, FreeContext>;
+
+bool isPng(std::FILE* file) {
+  constexpr std::array<unsigned char, 8> kSignature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+  std::array<unsigned char, 8> begin = {};
+  const bool is_png = std::fread(begin.data(), 1, begin.size(), file) == begin.size() && begin == kSignature;
+  std::rewind(file);
+  return is_png;
+}
+
+/// True for errors that no reader of PNG gets past. Others may be libspng's own limits.
+bool isDamage(int error) {
+  switch (error) {
+    case SPNG_IO_ERROR:
+    case SPNG_IO_EOF:
+    case SPNG_ECHUNK_CRC:
+    case SPNG_EIDAT_TOO_SHORT:
+    case SPNG_EIDAT_STREAM:
+      return true;
+    default:
+      return false;
+  }
+}
 
 int channelsOf(std::uint8_t colour_type) {
   switch (colour_type) {
@@ -50,17 +73,18 @@ class PngInput : public SampleInput {
  public:
   explicit PngInput(fs::path path) : path_(std::move(path)) {}
 
-  /// Reads all that stands before the samples. False where this is not a file for openPng().
+  /// Reads all that stands before the samples. False where this is not a file for openPng(). Throws InputError for
+  /// a damaged one: OpenImageIO would not read it either, and libpng prints a line of its own.
   bool open() {
     context_.reset();
     file_.reset(std::fopen(path_.c_str(), "rb"));
     context_.reset(spng_ctx_new(0));
     spng_ihdr header;
     spng_trns transparent;
-    if (!file_ || !context_ || spng_set_png_file(context_.get(), file_.get()) != 0 ||
+    if (!file_ || !context_ || !isPng(file_.get()) || spng_set_png_file(context_.get(), file_.get()) != 0 ||
         // What is not needed for the samples may be damaged.
         spng_set_crc_action(context_.get(), SPNG_CRC_ERROR, SPNG_CRC_DISCARD) != 0 ||
-        spng_get_ihdr(context_.get(), &header) != 0 || spng_get_trns(context_.get(), &transparent) == 0 ||
+        !succeeds(spng_get_ihdr(context_.get(), &header)) || succeeds(spng_get_trns(context_.get(), &transparent)) ||
         (header.bit_depth != 8 && header.bit_depth != 16) || header.interlace_method != SPNG_INTERLACE_NONE) {
       return false;
     }
@@ -68,7 +92,7 @@ class PngInput : public SampleInput {
               header.bit_depth == 16 ? SampleType::kUint16 : SampleType::kUint8};
     next_row_ = 0;
     return shape_.channels > 0 &&
-           spng_decode_image(context_.get(), nullptr, 0, SPNG_FMT_PNG, SPNG_DECODE_PROGRESSIVE) == 0;
+           succeeds(spng_decode_image(context_.get(), nullptr, 0, SPNG_FMT_PNG, SPNG_DECODE_PROGRESSIVE));
   }
 
   ImageShape shape() const override { return shape_; }
@@ -83,6 +107,11 @@ class PngInput : public SampleInput {
   }
 
  private:
+  bool succeeds(int error) const {
+    if (isDamage(error)) damaged("", spng_strerror(error));
+    return error == 0;
+  }
+
   void readRow(int begin, int end, std::span<std::byte> row) {
     const int error = spng_decode_row(context_.get(), row.data(), row.size());
     if (error != 0 && error != SPNG_EOI) damaged(begin, end, spng_strerror(error));  // EOI comes with the last row
@@ -91,8 +120,12 @@ class PngInput : public SampleInput {
 
   [[noreturn]] void damaged(int begin, int end, const char* reason) {
     next_row_ = shape_.height;  // the next call opens the file again
-    throw InputError({path_.string(), fmt::format("rows {} to {}", begin, end - 1), "readable image data", reason,
-                      "the file is truncated or damaged: export it again"});
+    damaged(fmt::format("rows {} to {}", begin, end - 1), reason);
+  }
+
+  [[noreturn]] void damaged(const std::string& item, const char* reason) const {
+    throw InputError(
+        {path_.string(), item, "readable image data", reason, "the file is truncated or damaged: replace it"});
   }
 
   fs::path path_;

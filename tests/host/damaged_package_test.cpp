@@ -56,6 +56,15 @@ TEST(Package, UnreadableFolderIsNotCalledMissing) {
   fs::permissions(folder / "package", fs::perms::owner_all);
 }
 
+TEST(Package, DamagedImagesAreNotExportedAgain) {
+  const test::TemporaryDirectory folder;
+  SamplePackage sample = makeSample({{}}, 2, 1);
+  test::writeSample(sample, folder.path());
+  io::writeTextFile(folder / sample.description.maps[0].neutral_file, "something else");
+  EXPECT_THAT(messageOfOpening(folder.path()),
+              testing::AllOf(HasSubstr("write it again"), testing::Not(HasSubstr("export"))));
+}
+
 TEST(PackageJson, TruncatedAtEveryLengthIsRefused) {
   const test::TemporaryDirectory folder;
   SamplePackage sample = makeSample({{}}, 2, 1);

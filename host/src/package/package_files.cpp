@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <vector>
 
@@ -42,6 +44,18 @@ void requireWhole(image::ImageReader& reader) {
   reader.readRows(shape.height - 1, shape.height, row);
 }
 
+/// Images of a package are not exported again, as those of a capture: the package is written again.
+image::ImageReader openReader(const fs::path& file) {
+  try {
+    return image::ImageReader(file);
+  } catch (const InputError& error) {
+    InputError::Parts parts = error.parts();
+    if (parts.got == std::strerror(EMFILE) || parts.got == std::strerror(EACCES)) throw;
+    parts.cure = "the package is damaged: write it again";
+    throw InputError(parts);
+  }
+}
+
 }  // namespace
 
 std::uint64_t checkImage(const fs::path& file, const image::ImageShape& shape) {
@@ -58,7 +72,7 @@ image::ImageShape differenceShape(const PackageMap& map) {
 }
 
 image::ImageReader openImage(const fs::path& file, const image::ImageShape& shape) {
-  image::ImageReader reader(file);
+  image::ImageReader reader = openReader(file);
   if (reader.shape() != shape) {
     throw InputError({file.string(), "", describe(shape) + " (package.json)", describe(reader.shape()),
                       "the package was changed: write it again"});

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "facezip/check.hpp"
 #include "facezip/package.hpp"
 #include "option_types.hpp"
 
@@ -49,7 +50,11 @@ void addInfoCommand(CLI::App& app, const CommonOptions&) {
   const auto package = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand("info", "Checks a package and says what it holds");
   command->add_option("package", *package, "Directory of the package")->required()->type_name("PACKAGE");
-  command->callback([package] { printPackage(Package::open(*package)); });
+  command->callback([package] {
+    const Package opened = Package::open(*package);
+    checkTexels(opened);
+    printPackage(opened);
+  });
 }
 
 }  // namespace facezip::cli

@@ -364,6 +364,21 @@ TEST_F(BadInput, DamagedPackages) {
   }
 }
 
+/// Damage that leaves the length of an image as it was, where a command that decodes nothing might miss it.
+TEST_F(BadInput, PackagesWhoseImagesCannotBeDecoded) {
+  ASSERT_EQ(compress().exit_code, cli::kExitSuccess);
+  std::string image = test::contentsOf(package() / "albedo/difference_1.png");
+  image[image.find("IDAT") + 8] ^= 0x10;
+  io::writeTextFile(package() / "albedo/difference_1.png", image);
+  for (const char* command : {"info ", "export --target gltf --output out ", "view --output out "}) {
+    const test::CommandResult result = runFacezip(command + quoted(package()), "cd " + quoted(folder_.path()) + " &&");
+    EXPECT_EQ(result.exit_code, cli::kExitInput) << command;
+    EXPECT_THAT(result.error, HasSubstr("albedo/difference_1.png")) << command;
+    EXPECT_EQ(result.out, "") << command;
+    EXPECT_FALSE(fs::exists(folder_ / "out")) << command;
+  }
+}
+
 TEST_F(BadInput, ReportOfACompressionThatIsNone) {
   ASSERT_EQ(compress().exit_code, cli::kExitSuccess);
   const fs::path page = folder_ / "page.html";

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "compress/codes/texture_encoding.hpp"
+#include "facezip/check.hpp"
 #include "facezip/package.hpp"
 #include "file_contents.hpp"
 #include "image/image_file.hpp"
@@ -63,6 +64,30 @@ TEST(Package, DamagedImagesAreNotExportedAgain) {
   io::writeTextFile(folder / sample.description.maps[0].neutral_file, "something else");
   EXPECT_THAT(messageOfOpening(folder.path()),
               testing::AllOf(HasSubstr("write it again"), testing::Not(HasSubstr("export"))));
+}
+
+/// Damage inside an image that keeps its length passes Package::open().
+TEST(Package, EveryImageIsReadByTheCheckOfTexels) {
+  const test::TemporaryDirectory folder;
+  SamplePackage sample = makeSample({{}}, 2, 1);
+  test::writeSample(sample, folder.path());
+  const PackageDescription& description = sample.description;
+  EXPECT_NO_THROW(checkTexels(Package::open(folder.path())));
+  for (const std::string& name :
+       {description.weights[0].files[0], description.maps[0].neutral_file, description.maps[0].differences[0].file}) {
+    const std::string whole = contentsOf(folder / name);
+    std::string damaged = whole;
+    const std::size_t data = damaged.find("IDAT") + 8;
+    damaged[data] = static_cast<char>(damaged[data] ^ 0x10);
+    io::writeTextFile(folder / name, damaged);
+    try {
+      checkTexels(Package::open(folder.path()));
+      ADD_FAILURE() << name;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(name));
+    }
+    io::writeTextFile(folder / name, whole);
+  }
 }
 
 TEST(PackageJson, TruncatedAtEveryLengthIsRefused) {

@@ -13,6 +13,7 @@
 #include "export/godot.hpp"
 #include "export/unity.hpp"
 #include "export/unreal.hpp"
+#include "facezip/check.hpp"
 #include "facezip/view.hpp"
 #include "io/staged_directory.hpp"
 #include "package/package_json.hpp"
@@ -48,6 +49,7 @@ const std::map<std::string, Target>& targets() {
 }
 
 void copyPackage(const Package& package, const fs::path& folder) {
+  checkTexels(package);
   for (const std::string& name : packageFiles(package)) {
     const fs::path to = folder / name;
     io::createDirectories(to.parent_path());

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "facezip/check.hpp"
 #include "io/base64.hpp"
 #include "io/read_file.hpp"
 #include "io/staged_directory.hpp"
@@ -29,6 +30,7 @@ const std::map<std::string_view, std::string_view>& viewerPage() { return view::
 std::vector<std::string> packageFiles(const Package& package) { return package::filesOf(package.description()); }
 
 void writeViewer(const Package& package, const fs::path& output) {
+  checkTexels(package);
   io::StagedDirectory staged(output, {"viewer.js", "facezip"});
   for (const auto& [name, text] : viewerPage()) {
     io::writeTextFile(staged.path() / name, name == "index.html" ? pageOnDisk(text) : std::string(text));

@@ -187,6 +187,22 @@ TEST(ImageReader, APngCutAnywhereIsNamedOnce) {
   }
 }
 
+TEST(ImageReader, InksAreRefused) {
+  const test::TemporaryDirectory folder;
+  OIIO::ImageSpec spec(4, 4, 3, OIIO::TypeDesc::UINT8);
+  spec.attribute("tiff:ColorSpace", "CMYK");
+  const std::vector<unsigned char> samples(48, 100);
+  const auto out = OIIO::ImageOutput::create((folder / "a.tif").string());
+  ASSERT_TRUE(out && out->open((folder / "a.tif").string(), spec));
+  ASSERT_TRUE(out->write_image(OIIO::TypeDesc::UINT8, samples.data()) && out->close());
+  try {
+    image::ImageReader(folder / "a.tif");
+    FAIL() << "expected InputError";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("CMYK"), std::string::npos) << error.what();
+  }
+}
+
 TEST(ImageReader, NoByteOfAPngIsDamagedUnnoticed) {
   const test::TemporaryDirectory folder;
   const image::Image image = ramp(21, 13, 3, image::SampleType::kUint8);

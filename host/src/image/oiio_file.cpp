@@ -69,6 +69,11 @@ class OiioInput : public SampleInput {
     if (spec.depth > 1 || spec.deep) {
       throw InputError({path_.string(), "", "a flat two-dimensional image", "a volume or deep image", ""});
     }
+    constexpr int kSeparated = 5;  // which OpenImageIO converts to RGB
+    if (spec.get_int_attribute("tiff:PhotometricInterpretation") == kSeparated) {
+      throw InputError(
+          {path_.string(), "", "samples that need no conversion of colours", "inks (CMYK)", "export it again, as RGB"});
+    }
     // A cropped image would lie beside its neutral.
     if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
         spec.height != spec.full_height) {

@@ -265,9 +265,9 @@ Capture openCapture(const fs::path& directory, const std::vector<std::string>& m
   const std::vector<std::string> chosen = chooseMaps(directory, found, map_names);
   std::map<std::string, FoundMap> used;
   for (const std::string& name : chosen) {
-    requireTextures(name, found.at(name));
     used[name] = found.at(name);
     requireName(name, "map", used[name].source);
+    requireTextures(name, used[name]);
   }
   capture.expressions = expressionNames(directory, description, used);
   for (const std::string& name : chosen) capture.maps.push_back(makeMap(name, used.at(name), capture.expressions));

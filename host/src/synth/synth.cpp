@@ -174,11 +174,18 @@ void writeRigTemplate(const fs::path& folder, std::uint64_t seed, Progress& prog
   progress.advance(actions.size());
 }
 
+/// What this may have written with any options.
+std::vector<fs::path> everyFile(const fs::path&) {
+  std::vector<fs::path> files = {kManifest, "neutral.obj", "expressions", "template", "weights.json"};
+  for (const synth::MapFormat& format : synth::mapFormats()) files.emplace_back(format.name);
+  return files;
+}
+
 }  // namespace
 
 void synthesizeCapture(const fs::path& output, const SynthOptions& options, Progress& progress) {
   const std::vector<synth::MapFormat> formats = chosenFormats(options);
-  io::StagedDirectory staged(output, {kManifest, "\"generator\": \"facezip synth\""});
+  io::StagedDirectory staged(output, {kManifest, "\"generator\": \"facezip synth\"", everyFile});
   const synth::HeadShape shape(options.seed);
   const synth::HeadMesh head(shape);
   const std::vector<synth::Expression> expressions = synth::makeExpressions(options.expressions, options.seed);

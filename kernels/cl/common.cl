@@ -96,10 +96,12 @@ inline float cell_position(int texel, int cells) {
   return (float)cell + (float)(steps - cell * STEPS_OF_CELL) * (1.0f / STEPS_OF_CELL);
 }
 
-// Those of 16 texels from `texel` on, counted from cell `first`.
+// Those of 16 texels from `texel` on, counted from cell `first`. The bounds are vectors because Oclgrind misreads scalar
+// ones beside a vector of int.
 inline float16 cell_positions_of_16(int texel, int first, int cells) {
   const int16 column = (int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-  const int16 steps = clamp(2 * (texel + column) + (1 - WEIGHT_SCALE), 0, STEPS_OF_CELL * (cells - 1));
+  const int16 last = (int16)(STEPS_OF_CELL * (cells - 1));
+  const int16 steps = clamp(2 * (texel + column) + (1 - WEIGHT_SCALE), (int16)0, last);
   return convert_float16(steps - first * STEPS_OF_CELL) * (1.0f / STEPS_OF_CELL);
 }
 

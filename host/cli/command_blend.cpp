@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "cancel_on_signal.hpp"
 #include "commands.hpp"
 #include "facezip/blend.hpp"
 #include "facezip/frame_file.hpp"

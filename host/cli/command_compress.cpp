@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "cancel_on_signal.hpp"
 #include "commands.hpp"
 #include "facezip/compress.hpp"
 #include "facezip/report.hpp"

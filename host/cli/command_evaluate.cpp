@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "cancel_on_signal.hpp"
 #include "commands.hpp"
 #include "error_sheet.hpp"
 #include "facezip/evaluate.hpp"

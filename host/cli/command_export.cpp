@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "cancel_on_signal.hpp"
 #include "commands.hpp"
 #include "facezip/export.hpp"
 #include "terminal.hpp"
@@ -25,8 +26,9 @@ void addExportCommand(CLI::App& app, const CommonOptions& common) {
   command->add_option("-o,--output", arguments->output, "Folder to write")->required()->type_name("DIR");
   command->callback([arguments, &common] {
     TerminalProgress progress(common.quiet);
+    const CancelOnSignal cancel(progress);
     const std::vector<std::string> losses =
-        exportPackage(Package::open(arguments->package), arguments->target, arguments->output);
+        exportPackage(Package::open(arguments->package), arguments->target, arguments->output, progress);
     for (const std::string& loss : losses) progress.note(loss);
     fmt::print("Read {}\n", (std::filesystem::path(arguments->output) / "README.md").string());
   });

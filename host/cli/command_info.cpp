@@ -9,6 +9,7 @@
 #include "facezip/check.hpp"
 #include "facezip/package.hpp"
 #include "option_types.hpp"
+#include "terminal.hpp"
 
 namespace facezip::cli {
 namespace {
@@ -46,13 +47,14 @@ void printPackage(const Package& package) {
 
 }  // namespace
 
-void addInfoCommand(CLI::App& app, const CommonOptions&) {
+void addInfoCommand(CLI::App& app, const CommonOptions& common) {
   const auto package = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand("info", "Checks a package and says what it holds");
   command->add_option("package", *package, "Directory of the package")->required()->type_name("PACKAGE");
-  command->callback([package] {
+  command->callback([package, &common] {
     const Package opened = Package::open(*package);
-    checkTexels(opened);
+    TerminalProgress progress(common.quiet);
+    checkTexels(opened, progress);
     printPackage(opened);
   });
 }

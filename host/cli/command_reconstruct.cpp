@@ -1,5 +1,6 @@
 #include <memory>
 
+#include "cancel_on_signal.hpp"
 #include "commands.hpp"
 #include "facezip/reconstruct.hpp"
 #include "shared_options.hpp"

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "cancel_on_signal.hpp"
 #include "commands.hpp"
 #include "facezip/evaluate.hpp"
 #include "facezip/html_report.hpp"

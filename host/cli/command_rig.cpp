@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "cancel_on_signal.hpp"
 #include "commands.hpp"
 #include "facezip/report.hpp"
 #include "facezip/rig.hpp"
@@ -90,7 +91,7 @@ void addRigCommand(CLI::App& app, const CommonOptions& common) {
     requireReportPlace(arguments->report);
     const CancelOnSignal cancel(progress);
     const Capture capture = openCapture(arguments->capture, arguments->maps, &progress);
-    const Device device = openDevice(arguments->device);
+    const Device device = openDevice(arguments->device, &progress);
     const RigReport report = rigCapture(capture, arguments->rig_template, arguments->output, options, device, progress);
     if (!arguments->report.empty()) writeReport(arguments->report, toJson(report));
     printRigReport(report);

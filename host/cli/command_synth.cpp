@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "cancel_on_signal.hpp"
 #include "commands.hpp"
 #include "facezip/synth.hpp"
 #include "shared_options.hpp"

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "cancel_on_signal.hpp"
 #include "commands.hpp"
 #include "facezip/view.hpp"
 #include "serve.hpp"
@@ -22,7 +23,7 @@ struct Arguments {
 void view(const Arguments& arguments, Progress& progress) {
   const Package package = Package::open(arguments.package);
   if (arguments.output) {
-    writeViewer(package, *arguments.output);
+    writeViewer(package, *arguments.output, progress);
     fmt::print("Look at {}\n", (std::filesystem::path(*arguments.output) / "index.html").string());
     return;
   }

@@ -32,14 +32,4 @@ class TerminalProgress : public Progress {
   std::chrono::steady_clock::time_point last_shown_;
 };
 
-/// Makes Ctrl-C, SIGTERM and SIGHUP cancel `progress`, so that the work stops at its next step and removes what is unfinished.
-/// Another one, a second or more later, ends the process at once. One object at a time.
-class CancelOnSignal {
- public:
-  explicit CancelOnSignal(Progress& progress);
-  ~CancelOnSignal();
-  CancelOnSignal(const CancelOnSignal&) = delete;
-  CancelOnSignal& operator=(const CancelOnSignal&) = delete;
-};
-
 }  // namespace facezip::cli

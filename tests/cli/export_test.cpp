@@ -1,4 +1,6 @@
 // `facezip export` as users script it: what lies in the folder for each target, and what is refused.
+#include "facezip/export.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -152,6 +154,25 @@ TEST_F(Export, BadInputIsRefusedAndLeavesNothing) {
   }
   EXPECT_EQ(exportTo("floats", "gltf", folder() / "floats_gltf").exit_code, 0);
   fails(exportTo("face", "maya", out), cli::kExitUsage, "maya");
+}
+
+/// Asked to stop as soon as it works.
+class CancelledAtOnce : public Progress {
+ public:
+  void stage(std::string_view, std::size_t) override { cancel(); }
+};
+
+TEST_F(Export, CancelledLeavesNothing) {
+  const test::TemporaryDirectory out;
+  const Package package = Package::open(folder() / "face");
+  for (const std::string& target : exportTargets()) {
+    CancelledAtOnce progress;
+    EXPECT_THROW(exportPackage(package, target, out / "to", progress), Cancelled) << target;
+    EXPECT_TRUE(fs::is_empty(out.path())) << target;
+  }
+  CancelledAtOnce progress;
+  EXPECT_THROW(writeViewer(package, out / "to", progress), Cancelled);
+  EXPECT_TRUE(fs::is_empty(out.path()));
 }
 
 }  // namespace

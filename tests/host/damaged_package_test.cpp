@@ -72,7 +72,8 @@ TEST(Package, EveryImageIsReadByTheCheckOfTexels) {
   SamplePackage sample = makeSample({{}}, 2, 1);
   test::writeSample(sample, folder.path());
   const PackageDescription& description = sample.description;
-  EXPECT_NO_THROW(checkTexels(Package::open(folder.path())));
+  Progress progress;
+  EXPECT_NO_THROW(checkTexels(Package::open(folder.path()), progress));
   for (const std::string& name :
        {description.weights[0].files[0], description.maps[0].neutral_file, description.maps[0].differences[0].file}) {
     const std::string whole = contentsOf(folder / name);
@@ -81,7 +82,7 @@ TEST(Package, EveryImageIsReadByTheCheckOfTexels) {
     damaged[data] = static_cast<char>(damaged[data] ^ 0x10);
     io::writeTextFile(folder / name, damaged);
     try {
-      checkTexels(Package::open(folder.path()));
+      checkTexels(Package::open(folder.path()), progress);
       ADD_FAILURE() << name;
     } catch (const InputError& error) {
       EXPECT_THAT(error.what(), HasSubstr(name));

@@ -48,9 +48,10 @@ TEST(EngineMaps, TexturesOfEightBitsDecodeToTheDifferences) {
   const test::TemporaryDirectory folder;
   const Package package = awkwardPackage(folder / "package", 5);
   for (const EngineMap& map : exporting::engineMaps(package)) {
+    Progress progress;
     std::filesystem::create_directories(folder / "textures");
-    exporting::writeNeutral(package, map, folder / "textures");
-    exporting::writeStack(package, map, folder / "textures");
+    exporting::writeNeutral(package, map, folder / "textures", progress);
+    exporting::writeStack(package, map, folder / "textures", progress);
     const image::Image neutral = image::readImage(folder / "textures" / (map.id + "_neutral.png"));
     EXPECT_EQ(neutral.shape.type, SampleType::kUint8);
     EXPECT_EQ(neutral.shape.channels, map.map.channels);

@@ -2,11 +2,12 @@
 #pragma once
 
 #include "facezip/package.hpp"
+#include "facezip/progress.hpp"
 
 namespace facezip {
 
 /// Reads all images of `package` from end to end, which Package::open() does not. Throws InputError that names the file
-/// that is damaged.
-void checkTexels(const Package& package);
+/// that is damaged, Cancelled.
+void checkTexels(const Package& package, Progress& progress);
 
 }  // namespace facezip

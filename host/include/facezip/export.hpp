@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "facezip/package.hpp"
+#include "facezip/progress.hpp"
 
 namespace facezip {
 
@@ -15,9 +16,9 @@ std::vector<std::string> exportTargets();
 /// Writes a folder: `scene.gltf` with `scene.bin` (the mesh with morph targets), `package` (a copy) or `textures` as
 /// engines take them, the blend in the target's language, and README.md for the person who drops it in: docs/export.md.
 /// It appears whole or not at all; a folder that was exported before is replaced. Throws InputError for an unknown
-/// target, a package without a mesh, and, of engines, one with maps of floats alone; OutputError.
+/// target, a package without a mesh, and, of engines, one with maps of floats alone; OutputError, Cancelled.
 /// Returns what of the package the target does not get, a sentence each.
 std::vector<std::string> exportPackage(const Package& package, const std::string& target,
-                                       const std::filesystem::path& output);
+                                       const std::filesystem::path& output, Progress& progress);
 
 }  // namespace facezip

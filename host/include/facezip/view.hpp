@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "facezip/package.hpp"
+#include "facezip/progress.hpp"
 
 namespace facezip {
 
@@ -21,7 +22,7 @@ std::vector<std::string> packageFiles(const Package& package);
 /// Writes a folder whose index.html shows the package in a browser, from a server or straight from disk: browsers let
 /// no page fetch files from disk, so that the package's are written as scripts. The folder appears whole or not at all;
 /// one that was written by this function before is replaced.
-/// Throws OutputError.
-void writeViewer(const Package& package, const std::filesystem::path& output);
+/// Throws InputError for damaged textures, OutputError, Cancelled.
+void writeViewer(const Package& package, const std::filesystem::path& output, Progress& progress);
 
 }  // namespace facezip

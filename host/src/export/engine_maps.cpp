@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <set>
+#include <span>
 #include <string_view>
 
 #include "image/image_file.hpp"
@@ -79,6 +80,24 @@ image::Image readBytes(const fs::path& file) {
   return image;
 }
 
+/// Writes an image rows at a time: large ones take longer than somebody waits who pressed Ctrl-C.
+void writeTexture(const fs::path& file, const image::Image& image, Progress& progress) {
+  constexpr int kRowsAtOnce = 64;
+  progress.stage("writing " + file.filename().string(), static_cast<std::size_t>(image.shape.height));
+  image::ImageWriter writer(file, image.shape);
+  const std::size_t row_bytes = image.shape.rowBytes();
+  for (int row = 0; row < image.shape.height; row += kRowsAtOnce) {
+    progress.checkCancelled();
+    const int rows = std::min(kRowsAtOnce, image.shape.height - row);
+    writer.writeRows(
+        std::span(image.samples)
+            .subspan(static_cast<std::size_t>(row) * row_bytes, static_cast<std::size_t>(rows) * row_bytes),
+        rows);
+    progress.advance(static_cast<std::size_t>(row + rows));
+  }
+  writer.close();
+}
+
 }  // namespace
 
 std::vector<EngineMap> engineMaps(const Package& package) {
@@ -115,14 +134,14 @@ void requireMaps(const Package& package, const std::vector<EngineMap>& maps) {
                     "compress a capture with textures of integers"});
 }
 
-void writeNeutral(const Package& package, const EngineMap& map, const fs::path& folder) {
-  image::writeImage(folder / (map.id + "_neutral.png"), readBytes(package.directory() / map.map.neutral_file));
+void writeNeutral(const Package& package, const EngineMap& map, const fs::path& folder, Progress& progress) {
+  writeTexture(folder / (map.id + "_neutral.png"), readBytes(package.directory() / map.map.neutral_file), progress);
 }
 
-void writeDifferences(const Package& package, const EngineMap& map, const fs::path& folder) {
+void writeDifferences(const Package& package, const EngineMap& map, const fs::path& folder, Progress& progress) {
   for (std::size_t i = 0; i < map.map.differences.size(); ++i) {
-    image::writeImage(folder / fmt::format("{}_difference_{}.png", map.id, i),
-                      readBytes(package.directory() / map.map.differences[i].file));
+    writeTexture(folder / fmt::format("{}_difference_{}.png", map.id, i),
+                 readBytes(package.directory() / map.map.differences[i].file), progress);
   }
 }
 
@@ -141,7 +160,7 @@ StackLayout stackLayout(const Package& package, const EngineMap& map) {
                     "compress smaller textures, or with fewer --differences"});
 }
 
-void writeStack(const Package& package, const EngineMap& map, const fs::path& folder) {
+void writeStack(const Package& package, const EngineMap& map, const fs::path& folder, Progress& progress) {
   const StackLayout layout = stackLayout(package, map);
   image::ImageShape shape{layout.columns * map.map.width, layout.rows * map.map.height, map.map.channels,
                           SampleType::kUint8};
@@ -156,7 +175,7 @@ void writeStack(const Package& package, const EngineMap& map, const fs::path& fo
       std::memcpy(stack.samples.data() + to, one.samples.data() + y * row_bytes, row_bytes);
     }
   }
-  image::writeImage(folder / (map.id + "_differences.png"), stack);
+  writeTexture(folder / (map.id + "_differences.png"), stack, progress);
 }
 
 std::vector<int> usedSets(const std::vector<EngineMap>& maps) {
@@ -165,12 +184,13 @@ std::vector<int> usedSets(const std::vector<EngineMap>& maps) {
   return {sets.begin(), sets.end()};
 }
 
-void writeWeights(const Package& package, const std::vector<EngineMap>& maps, const fs::path& folder) {
+void writeWeights(const Package& package, const std::vector<EngineMap>& maps, const fs::path& folder,
+                  Progress& progress) {
   for (const int set : usedSets(maps)) {
     const std::vector<std::string>& files = package.weightSets()[static_cast<std::size_t>(set)].files;
     for (std::size_t f = 0; f < files.size(); ++f) {
-      image::writeImage(folder / fmt::format("weights_{}_{}.png", set, f),
-                        image::readImage(package.directory() / files[f]));
+      writeTexture(folder / fmt::format("weights_{}_{}.png", set, f), image::readImage(package.directory() / files[f]),
+                   progress);
     }
   }
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "facezip/package.hpp"
+#include "facezip/progress.hpp"
 
 namespace facezip::exporting {
 
@@ -37,10 +38,12 @@ std::vector<std::string> lossesOf(const Package& package);
 void requireMaps(const Package& package, const std::vector<EngineMap>& maps);
 
 /// Writes textures/ID_neutral.png, 8 bits, rows from the top, nothing recorded that a reader might convert by.
-void writeNeutral(const Package& package, const EngineMap& map, const std::filesystem::path& folder);
+void writeNeutral(const Package& package, const EngineMap& map, const std::filesystem::path& folder,
+                  Progress& progress);
 
 /// Writes textures/ID_difference_I.png likewise.
-void writeDifferences(const Package& package, const EngineMap& map, const std::filesystem::path& folder);
+void writeDifferences(const Package& package, const EngineMap& map, const std::filesystem::path& folder,
+                      Progress& progress);
 
 /// Where writeStack() puts texture i: column i mod columns, row i div columns.
 struct StackLayout {
@@ -51,10 +54,11 @@ struct StackLayout {
 StackLayout stackLayout(const Package& package, const EngineMap& map);
 
 /// Writes textures/ID_differences.png: all difference textures in one image, for importers that cut it into layers.
-void writeStack(const Package& package, const EngineMap& map, const std::filesystem::path& folder);
+void writeStack(const Package& package, const EngineMap& map, const std::filesystem::path& folder, Progress& progress);
 
 /// Writes textures/weights_SET_FILE.png of every set that the maps use, as the package has it.
-void writeWeights(const Package& package, const std::vector<EngineMap>& maps, const std::filesystem::path& folder);
+void writeWeights(const Package& package, const std::vector<EngineMap>& maps, const std::filesystem::path& folder,
+                  Progress& progress);
 
 /// Indices of the sets that the maps use, rising.
 std::vector<int> usedSets(const std::vector<EngineMap>& maps);

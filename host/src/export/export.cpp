@@ -34,7 +34,7 @@ enum class Textures {
 struct Target {
   std::vector<std::string> files;
   Textures textures = Textures::kPackage;
-  void (*write)(const Package& package, const fs::path& folder) = nullptr;
+  void (*write)(const Package& package, const fs::path& folder, Progress& progress) = nullptr;
 };
 
 const std::map<std::string, Target>& targets() {
@@ -48,9 +48,10 @@ const std::map<std::string, Target>& targets() {
   return all;
 }
 
-void copyPackage(const Package& package, const fs::path& folder) {
-  checkTexels(package);
+void copyPackage(const Package& package, const fs::path& folder, Progress& progress) {
+  checkTexels(package, progress);
   for (const std::string& name : packageFiles(package)) {
+    progress.checkCancelled();
     const fs::path to = folder / name;
     io::createDirectories(to.parent_path());
     std::error_code error;
@@ -90,7 +91,8 @@ std::vector<std::string> exportTargets() {
   return names;
 }
 
-std::vector<std::string> exportPackage(const Package& package, const std::string& target, const fs::path& output) {
+std::vector<std::string> exportPackage(const Package& package, const std::string& target, const fs::path& output,
+                                       Progress& progress) {
   const auto found = targets().find(target);
   if (found == targets().end()) {
     throw InputError({"--target", "", fmt::format("{}", fmt::join(exportTargets(), ", ")), target, ""});
@@ -103,9 +105,9 @@ std::vector<std::string> exportPackage(const Package& package, const std::string
   io::StagedDirectory staged(output, {"scene.gltf", "\"generator\": \"facezip "});
   const Target& chosen = found->second;
   if (chosen.write != nullptr) {
-    chosen.write(package, staged.path());
+    chosen.write(package, staged.path(), progress);
   } else {
-    copyPackage(package, staged.path() / "package");
+    copyPackage(package, staged.path() / "package", progress);
   }
   exporting::addBlendToGltf(package.directory() / description.mesh_file, staged.path() / "scene.gltf",
                             plainMaterial(package, chosen.textures));

@@ -49,17 +49,18 @@ void writeSceneImport(const fs::path& folder) {
                     "animation/import=false\n");
 }
 
-void writeTextures(const Package& package, const std::vector<EngineMap>& maps, const fs::path& folder) {
+void writeTextures(const Package& package, const std::vector<EngineMap>& maps, const fs::path& folder,
+                   Progress& progress) {
   const fs::path textures = folder / "textures";
   io::createDirectories(textures);
   for (const EngineMap& map : maps) {
-    writeNeutral(package, map, textures);
+    writeNeutral(package, map, textures, progress);
     writeTextureImport(textures / (map.id + "_neutral.png"));
-    writeStack(package, map, textures);
+    writeStack(package, map, textures, progress);
     const StackLayout layout = stackLayout(package, map);
     writeArrayImport(textures / (map.id + "_differences.png"), layout.columns, layout.rows, Filter::kMipmaps);
   }
-  writeWeights(package, maps, textures);
+  writeWeights(package, maps, textures, progress);
   for (const int set : usedSets(maps)) {
     const PackageWeights& weights = package.weightSets()[static_cast<std::size_t>(set)];
     for (std::size_t f = 0; f < weights.files.size(); ++f) {
@@ -149,10 +150,10 @@ fov = 30.0
 
 }  // namespace
 
-void writeGodot(const Package& package, const fs::path& folder) {
+void writeGodot(const Package& package, const fs::path& folder, Progress& progress) {
   const std::vector<EngineMap> maps = engineMaps(package);
   requireMaps(package, maps);
-  writeTextures(package, maps, folder);
+  writeTextures(package, maps, folder, progress);
   writeSceneImport(folder);
   io::writeTextFile(folder / "face.shader", godotShader(package, maps));
   writeMaterial(package, maps, folder / "face.material.tres");

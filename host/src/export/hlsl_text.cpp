@@ -97,15 +97,15 @@ std::string hlslFunctions(const Package& package, const std::vector<EngineMap>& 
   return text;
 }
 
-void writePlainTextures(const Package& package, const std::vector<EngineMap>& maps,
-                        const std::filesystem::path& folder) {
+void writePlainTextures(const Package& package, const std::vector<EngineMap>& maps, const std::filesystem::path& folder,
+                        Progress& progress) {
   const std::filesystem::path textures = folder / "textures";
   io::createDirectories(textures);
   for (const EngineMap& map : maps) {
-    writeNeutral(package, map, textures);
-    writeDifferences(package, map, textures);
+    writeNeutral(package, map, textures, progress);
+    writeDifferences(package, map, textures, progress);
   }
-  writeWeights(package, maps, textures);
+  writeWeights(package, maps, textures, progress);
 }
 
 }  // namespace facezip::exporting

@@ -22,7 +22,7 @@ std::string hlslFunctions(const Package& package, const std::vector<EngineMap>& 
 std::vector<std::string> mapTextures(const Package& package, const EngineMap& map);
 
 /// Writes textures/ for these: neutrals, difference textures one by one, weight atlases.
-void writePlainTextures(const Package& package, const std::vector<EngineMap>& maps,
-                        const std::filesystem::path& folder);
+void writePlainTextures(const Package& package, const std::vector<EngineMap>& maps, const std::filesystem::path& folder,
+                        Progress& progress);
 
 }  // namespace facezip::exporting

@@ -94,10 +94,10 @@ std::string plainName(const std::string& name) {
 
 }  // namespace
 
-void writeUnity(const Package& package, const std::filesystem::path& folder) {
+void writeUnity(const Package& package, const std::filesystem::path& folder, Progress& progress) {
   const std::vector<EngineMap> maps = engineMaps(package);
   requireMaps(package, maps);
-  writePlainTextures(package, maps, folder);
+  writePlainTextures(package, maps, folder, progress);
   io::writeTextFile(folder / "FaceZip.hlsl", hlslFile(package, maps));
   std::string properties;
   for (const std::string& name : allTextures(package, maps)) {

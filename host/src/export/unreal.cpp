@@ -59,10 +59,10 @@ std::pair<const char*, int> materialProperty(MapRole role) {
 
 }  // namespace
 
-void writeUnreal(const Package& package, const std::filesystem::path& folder) {
+void writeUnreal(const Package& package, const std::filesystem::path& folder, Progress& progress) {
   const std::vector<EngineMap> maps = engineMaps(package);
   requireMaps(package, maps);
-  writePlainTextures(package, maps, folder);
+  writePlainTextures(package, maps, folder, progress);
   io::writeTextFile(folder / "FaceZip.ush", blendStruct(package, maps));
   // What facezip_unreal.py reads.
   nlohmann::json face = {

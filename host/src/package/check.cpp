@@ -32,11 +32,12 @@ std::vector<std::pair<std::string, image::ImageShape>> imagesOf(const PackageDes
   return images;
 }
 
-void readAll(const fs::path& file, const image::ImageShape& shape) {
+void readAll(const fs::path& file, const image::ImageShape& shape, const Progress& progress) {
   constexpr int kRowsAtOnce = 64;
   image::ImageReader reader = package::openImage(file, shape);
   std::vector<std::byte> rows;
   for (int begin = 0; begin < shape.height; begin += kRowsAtOnce) {
+    progress.checkCancelled();
     const int end = std::min(begin + kRowsAtOnce, shape.height);
     rows.resize(static_cast<std::size_t>(end - begin) * shape.rowBytes());
     reader.readRows(begin, end, rows);
@@ -45,10 +46,11 @@ void readAll(const fs::path& file, const image::ImageShape& shape) {
 
 }  // namespace
 
-void checkTexels(const Package& package) {
+void checkTexels(const Package& package, Progress& progress) {
   const auto images = imagesOf(package.description());
+  progress.stage("reading textures", 0);
   tbb::parallel_for(std::size_t{0}, images.size(),
-                    [&](std::size_t i) { readAll(package.directory() / images[i].first, images[i].second); });
+                    [&](std::size_t i) { readAll(package.directory() / images[i].first, images[i].second, progress); });
 }
 
 }  // namespace facezip

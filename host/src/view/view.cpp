@@ -29,13 +29,14 @@ const std::map<std::string_view, std::string_view>& viewerPage() { return view::
 
 std::vector<std::string> packageFiles(const Package& package) { return package::filesOf(package.description()); }
 
-void writeViewer(const Package& package, const fs::path& output) {
-  checkTexels(package);
+void writeViewer(const Package& package, const fs::path& output, Progress& progress) {
+  checkTexels(package, progress);
   io::StagedDirectory staged(output, {"viewer.js", "facezip"});
   for (const auto& [name, text] : viewerPage()) {
     io::writeTextFile(staged.path() / name, name == "index.html" ? pageOnDisk(text) : std::string(text));
   }
   for (const std::string& name : packageFiles(package)) {
+    progress.checkCancelled();
     const fs::path file = staged.path() / "package" / (name + ".js");
     io::createDirectories(file.parent_path());
     io::writeTextFile(file, fmt::format("facezipFile({},\"{}\")\n", nlohmann::json(name).dump(),

@@ -31,8 +31,11 @@ void printWeights(const Package& package, std::size_t set) {
 }
 
 void printPackage(const Package& package) {
-  fmt::print("{}: {} expressions, {} difference textures a map, made by {}\n", package.name(),
-             package.expressions().size(), package.differences(), package.description().generator);
+  const auto plural = [](std::size_t count) { return count == 1 ? "" : "s"; };
+  const std::size_t expressions = package.expressions().size();
+  const auto differences = static_cast<std::size_t>(package.differences());
+  fmt::print("{}: {} expression{}, {} difference texture{} a map, made by {}\n", package.name(), expressions,
+             plural(expressions), differences, plural(differences), package.description().generator);
   for (const PackageMap& map : package.maps()) {
     fmt::print("  map {}: {} x {}, {} channel{}, {}{}{}, differences in {} bits, {} texels to a weight texel\n",
                map.name, map.width, map.height, map.channels, map.channels == 1 ? "" : "s", sampleName(map.sample_type),

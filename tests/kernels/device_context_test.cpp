@@ -28,6 +28,12 @@ TEST(DeviceContext, UnknownKernelFileIsADeviceError) {
   EXPECT_THROW(test::testDevice().kernel("no_such_file.cl", "x"), DeviceError);
 }
 
+TEST(DeviceContext, AFolderOfKernelsThatIsNotThereIsNamed) {
+  ::setenv("FACEZIP_KERNEL_DIR", "/no/such/folder", 1);
+  EXPECT_THROW(test::testDevice().kernel("weight_map.cl", "weight_map"), InputError);
+  ::unsetenv("FACEZIP_KERNEL_DIR");
+}
+
 TEST(OpenDevice, UnknownSelectorListsTheDevices) {
   try {
     openDevice("no such device");

@@ -14,8 +14,12 @@
 namespace facezip::device {
 
 std::string kernelSource(std::string_view file_name) {
-  const auto find = [](std::string_view name) -> std::string {
-    if (const char* folder = std::getenv("FACEZIP_KERNEL_DIR")) {
+  const char* folder = std::getenv("FACEZIP_KERNEL_DIR");
+  if (folder != nullptr && !std::filesystem::is_directory(folder)) {
+    throw InputError({"FACEZIP_KERNEL_DIR", "", "a folder with kernel files", folder, "unset it for those built in"});
+  }
+  const auto find = [folder](std::string_view name) -> std::string {
+    if (folder != nullptr) {
       std::ifstream file(std::filesystem::path(folder) / name);
       if (file) return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
     }

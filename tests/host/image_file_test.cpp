@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <limits>
@@ -14,6 +15,7 @@
 #include "facezip/error.hpp"
 #include "file_contents.hpp"
 #include "image/image_format.hpp"
+#include "image/output_formats.hpp"
 #include "temporary_directory.hpp"
 
 namespace facezip {
@@ -285,8 +287,46 @@ TEST(ImageWriter, FormatsThatWouldLoseSamplesAreRefused) {
   EXPECT_NO_THROW(image::writeImage(folder / "a.exr", ramp(8, 4, 3, image::SampleType::kUint8)));
 }
 
+TEST(ImageWriter, WhatPassesComesBack) {
+  const test::TemporaryDirectory folder;
+  int passed = 0;
+  for (const char* name : {"a.png", "a.PNG", "a.tif", "a.tiff", "a.exr", "a.tga", "a.bmp"}) {
+    for (const auto type : {image::SampleType::kUint8, image::SampleType::kUint16, image::SampleType::kFloat32}) {
+      for (int channels = 1; channels <= 5; ++channels) {
+        const image::Image written = ramp(21, 19, channels, type);
+        try {
+          image::requireFormat(folder / name, written.shape);
+        } catch (const InputError&) {
+          EXPECT_THROW(image::writeImage(folder / name, written), InputError);
+          continue;
+        }
+        ++passed;
+        image::writeImage(folder / name, written);
+        const image::Image read = image::readImage(folder / name);
+        EXPECT_EQ(read.shape.width, 21) << name;
+        EXPECT_EQ(read.shape.height, 19) << name;
+        ASSERT_EQ(read.shape.channels, channels) << name;
+        if (read.shape.type == type) {
+          EXPECT_EQ(read.samples, written.samples) << name << ' ' << channels;
+          continue;
+        }
+        EXPECT_EQ(read.shape.type, image::SampleType::kFloat32) << name;  // EXR holds bytes as halves
+        const auto* values = reinterpret_cast<const float*>(read.samples.data());
+        for (std::size_t i = 0; i < written.samples.size(); ++i) {
+          EXPECT_EQ(std::lround(255.0f * values[i]), std::to_integer<int>(written.samples[i])) << name << ' ' << i;
+        }
+      }
+    }
+  }
+  EXPECT_EQ(passed, 2 * 8 + 2 * 12 + 8 + 3 + 2);
+}
+
 TEST(ImageWriter, UnknownExtensionIsAnInputError) {
   const test::TemporaryDirectory folder;
+  for (const char* name : {"a.hdr", "a.jp2", "a.dpx", "a"}) {
+    EXPECT_THROW(image::ImageWriter(folder / name, {4, 4, 3, image::SampleType::kUint8}), InputError) << name;
+  }
+  EXPECT_THROW(image::ImageWriter(folder / "a.jpg", {4, 4, 2, image::SampleType::kUint8}), InputError);
   EXPECT_THROW(image::ImageWriter(folder / "a.nosuchformat", {4, 4, 3, image::SampleType::kUint8}), InputError);
 }
 

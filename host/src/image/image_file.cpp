@@ -11,6 +11,7 @@
 
 #include "facezip/error.hpp"
 #include "image/image_format.hpp"
+#include "image/output_formats.hpp"
 
 namespace facezip::image {
 namespace fs = std::filesystem;
@@ -72,6 +73,7 @@ void ImageReader::readRows(int begin, int end, std::span<std::byte> out) {
 
 ImageWriter::ImageWriter(const fs::path& path, const ImageShape& shape, const std::string& colour_space)
     : shape_(shape) {
+  requireFormat(path, shape);
   output_ = createPng(path, shape, colour_space);
   if (!output_) output_ = anyFormat().create(path, shape, colour_space);
 }

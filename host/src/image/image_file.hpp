@@ -66,8 +66,8 @@ class ImageReader {
 /// Writes an image from top to bottom.
 class ImageWriter {
  public:
-  /// Creates `path`; the extension decides the format. Throws InputError for an unknown extension or a format that
-  /// cannot hold the shape, OutputError if the file cannot be created.
+  /// Creates `path`; the extension decides the format. Throws InputError as requireFormat() does (output_formats.hpp),
+  /// OutputError if the file cannot be created.
   /// `colour_space` is recorded where the format can ("sRGB", "linear"; empty: not recorded).
   ImageWriter(const std::filesystem::path& path, const ImageShape& shape, const std::string& colour_space = "");
   ~ImageWriter();

@@ -36,7 +36,7 @@ class SampleOutput {
 std::unique_ptr<SampleInput> openPng(const std::filesystem::path& path);
 
 /// Creates a PNG file. Null for names that do not end in .png.
-/// Throws InputError for what PNG cannot hold (floats), OutputError.
+/// Throws OutputError.
 std::unique_ptr<SampleOutput> createPng(const std::filesystem::path& path, const ImageShape& shape,
                                         const std::string& colour_space);
 
@@ -46,7 +46,7 @@ class AnyFormat {
   virtual ~AnyFormat() = default;
   /// Throws InputError.
   virtual std::unique_ptr<SampleInput> open(const std::filesystem::path& path) = 0;
-  /// Throws InputError for an unknown extension, OutputError.
+  /// path, shape  that requireFormat() lets pass. Throws OutputError.
   virtual std::unique_ptr<SampleOutput> create(const std::filesystem::path& path, const ImageShape& shape,
                                                const std::string& colour_space) = 0;
   /// Extensions of files that can be read, in lower case with the dot.

@@ -204,12 +204,6 @@ std::unique_ptr<SampleInput> openPng(const fs::path& path) {
 std::unique_ptr<SampleOutput> createPng(const fs::path& path, const ImageShape& shape,
                                         const std::string& colour_space) {
   if (path.extension() != ".png") return nullptr;
-  if (shape.type == SampleType::kFloat32 || shape.channels < 1 || shape.channels > 4) {
-    throw InputError({path.string(), "",
-                      fmt::format("a format for {} channel{} of {} samples", shape.channels,
-                                  shape.channels == 1 ? "" : "s", sampleTypeName(shape.type)),
-                      "PNG, for 1 to 4 channels of 8 or 16 bits", "use .exr or .tif"});
-  }
   return std::make_unique<PngOutput>(path, shape, colour_space);
 }
 

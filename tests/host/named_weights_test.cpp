@@ -96,7 +96,7 @@ TEST_F(Animation, NamesOfThePackageGoBeforeColumnsOfTime) {
 
 TEST_F(Animation, NamesFileLineAndColumn) {
   EXPECT_THAT(messageOf("smile\n0.5\nx\n"),
-              HasSubstr("clip.csv: line 3, column 1: expected a finite number, got \"x\""));
+              HasSubstr("clip.csv: line 3, column 1: expected a number of at most 1e+06 either way, got \"x\""));
   EXPECT_THAT(messageOf("smile,frown\n1,2\n"), HasSubstr("line 1, column 2"));
   EXPECT_THAT(messageOf("smile,smile\n1,2\n"), HasSubstr("line 1, column 2: expected each expression once"));
   EXPECT_THAT(messageOf("smile,jawOpen\n1\n"), HasSubstr("line 2: expected 2 columns, got 1"));

@@ -80,6 +80,26 @@ class Runtime(unittest.TestCase):
         thread.join()
         self.assertEqual(seen, [b""])
 
+    def test_weights_have_a_limit(self):
+        package = Package(EXAMPLE)
+        for weight in (1e7, float("inf"), float("nan")):
+            with self.assertRaisesRegex(RuntimeError, "at most"):
+                package.blend(0, [weight, 0.0])
+        package.blend(0, [-1e6, 1e6])
+        package.close()
+
+    def test_unloading_after_use(self):
+        """Threads of the libraries below may still run then."""
+        script = ("import _ctypes, ctypes, os, sys, time\n"
+                  "lib = ctypes.CDLL(sys.argv[1])\n"
+                  "face = ctypes.c_void_p()\n"
+                  "assert lib.facezip_load(os.fsencode(sys.argv[2]), b'cpu', ctypes.byref(face)) == 0\n"
+                  "lib.facezip_free(face)\n"
+                  "_ctypes.dlclose(lib._handle)\n"
+                  "time.sleep(0.5)\n")
+        for _ in range(3):
+            subprocess.run([sys.executable, "-c", script, LIBRARY, EXAMPLE], check=True)
+
     def test_packages_of_two_threads(self):
         frames = {}
 

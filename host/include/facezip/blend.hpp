@@ -16,6 +16,9 @@
 
 namespace facezip {
 
+/// Of a blendshape weight, either way: a million times an expression is a mistake, and floats overflow not far above.
+inline constexpr float kLargestWeight = 1e6f;
+
 /// Blends frames of one package:  T(p) = I_0(p) + sum_i D_i(p) w_i(p),  w_i = bilinear(sum_n beta_n W_n[i])  (Eq. 8).
 /// The textures go to the device once; frames then cost no upload and no allocation of texels.
 /// One thread at a time may use a Blender.
@@ -30,8 +33,8 @@ class Blender {
 
   /// Sets beta, for the blend() calls that follow, of any map. Costs one pass over the weight maps of the expressions
   /// whose beta is not zero, of each set of weights.
-  /// beta  N values in the order of Package::expressions(); any sign, finite
-  /// Throws InputError for another count, and naming the expression whose value is NaN or infinite.
+  /// beta  N values in the order of Package::expressions(); any sign, at most kLargestWeight
+  /// Throws InputError for another count, and naming the expression whose value is larger, or NaN.
   void setWeights(std::span<const float> beta);
 
   /// Sets gains, for the setWeights() calls that follow. Throws InputError when the gain is of another package.

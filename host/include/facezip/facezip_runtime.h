@@ -32,7 +32,7 @@ extern "C" {
 typedef enum facezip_status {
   FACEZIP_OK = 0,
   FACEZIP_ERROR_ARGUMENT =
-      1,                    /**< a null pointer, an index out of range, a size that does not fit, a weight not finite */
+      1,                    /**< a null pointer, an index out of range, a size that does not fit, a weight beyond 1e6 */
   FACEZIP_ERROR_INPUT = 3,  /**< the package is missing, damaged or of a version that is not known */
   FACEZIP_ERROR_DEVICE = 4, /**< no OpenCL device answers to the selector, or it failed, or has not the memory */
   FACEZIP_ERROR_MEMORY = 5, /**< the host has not the memory */
@@ -67,14 +67,15 @@ FACEZIP_RUNTIME_API int32_t facezip_runtime_abi(void);
 /** The library's version, "0.1.0". */
 FACEZIP_RUNTIME_API const char* facezip_runtime_version(void);
 
-/** One line about the last call of this thread that failed; "" before the first. Valid until the next one fails. */
+/** What was wrong with the last call of this thread that failed, a line or more; "" before the first. Valid until the
+ *  next one fails. */
 FACEZIP_RUNTIME_API const char* facezip_last_error(void);
 
 /** Loads every texel of a package onto a device; weights are all zero. Takes seconds for large packages, and a second
  *  more the first time on a device, when kernels are compiled.
  *  directory  of the package, UTF-8
- *  device     selector as `facezip --device` takes it: "auto", "gpu", "cpu", "PLATFORM:DEVICE", part of a name; null:
- * auto package    set to the package, to be given to facezip_free(); to null on failure
+ *  device     selector as `facezip --device` takes it: "auto", "gpu", "cpu", "PLATFORM:DEVICE", part of a name; null: auto.
+ *  package    set to the package, to be given to facezip_free(); to null on failure
  */
 FACEZIP_RUNTIME_API facezip_status facezip_load(const char* directory, const char* device, facezip_package** package);
 
@@ -102,7 +103,7 @@ FACEZIP_RUNTIME_API facezip_status facezip_get_map_info(const facezip_package* p
 
 /** Sets the weights that the following frames, of every map, are blended with. Costs a pass over the weight maps of the
  *  expressions whose weight is not zero. On failure the weights stay as they were.
- *  weights  count finite values of any sign, in the order of the expressions
+ *  weights  count values of any sign, at most 1e6 either way, in the order of the expressions
  *  count    N
  */
 FACEZIP_RUNTIME_API facezip_status facezip_set_weights(facezip_package* package, const float* weights, size_t count);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <fstream>
 #include <string>
 
@@ -75,9 +76,10 @@ void appendFrame(const std::string& line, std::size_t line_number, const std::fi
   for (std::size_t column = 0; column < fields.size(); ++column) {
     if (columns[column] == kSkippedColumn) continue;
     const std::optional<float> weight = blend::parseNumber(fields[column]);
-    if (!weight) {
-      throw InputError(
-          {file.string(), fieldItem(line_number, column), "a finite number", package::quoted(fields[column]), ""});
+    if (!weight || std::abs(*weight) > kLargestWeight) {
+      throw InputError({file.string(), fieldItem(line_number, column),
+                        fmt::format("a number of at most {:g} either way", kLargestWeight),
+                        package::quoted(fields[column]), ""});
     }
     clip.weights[frame + static_cast<std::size_t>(columns[column])] = *weight;
   }
@@ -86,6 +88,10 @@ void appendFrame(const std::string& line, std::size_t line_number, const std::fi
 }  // namespace
 
 AnimationClip readAnimation(const std::filesystem::path& file, const Package& package) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) {
+    throw InputError({file.string(), "", "a table of blendshape weights", "a folder", ""});
+  }
   std::ifstream stream(file);
   if (!stream) throw InputError({file.string(), "", "a table of blendshape weights", "no readable file", ""});
   AnimationClip clip;

@@ -96,8 +96,9 @@ std::vector<float> weightsByName(const Package& package, const std::vector<std::
   for (const auto& [name, weight] : weights) {
     const std::size_t n = static_cast<std::size_t>(blend::expressionIndex(package, name, "weights"));
     if (given[n]) throw InputError({"", "weights", "each expression once", package::quoted(name) + " twice", ""});
-    if (!std::isfinite(weight)) {
-      throw InputError({"", "weights", "a finite number for " + name, fmt::format("{}", weight), ""});
+    if (!(std::abs(weight) <= kLargestWeight)) {
+      throw InputError({"", "weights", fmt::format("a number of at most {:g} either way for {}", kLargestWeight, name),
+                        fmt::format("{:g}", weight), ""});
     }
     given[n] = true;
     beta[n] = weight;

@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "facezip/blend.hpp"
 #include "facezip/error.hpp"
 
 namespace facezip::blend {
@@ -86,9 +87,10 @@ void requireWeights(std::span<const float> beta, std::span<const std::string> na
                       fmt::format("{}", beta.size()), ""});
   }
   for (std::size_t n = 0; n < beta.size(); ++n) {
-    if (std::isfinite(beta[n])) continue;
-    throw InputError({"", fmt::format("blendshape weight of {}", names[n]), "a finite number",
-                      std::isnan(beta[n]) ? "NaN" : "infinity", ""});
+    if (std::abs(beta[n]) <= kLargestWeight) continue;
+    throw InputError({"", fmt::format("blendshape weight of {}", names[n]),
+                      fmt::format("a number of at most {:g} either way", kLargestWeight),
+                      std::isnan(beta[n]) ? "NaN" : fmt::format("{:g}", beta[n]), ""});
   }
 }
 

@@ -46,7 +46,7 @@ class WeightMaps {
 
   /// Sums the weight maps of cell rows [begin_row, end_row) into weights(); other rows are left as they were.
   /// Expressions whose beta is 0 cost nothing and change no bit.
-  /// beta  N finite values
+  /// beta  N values of at most kLargestWeight
   cl::Event blend(std::span<const float> beta, int begin_row, int end_row);
   cl::Event blend(std::span<const float> beta) { return blend(beta, 0, grid_.rows); }
 
@@ -73,8 +73,8 @@ class WeightMaps {
   std::vector<float> decoding_;  // scale_i, then offset_i times the sum of beta
 };
 
-/// Throws InputError that names the expression (by index, or by `names` when given) whose weight is not finite, or
-/// says how many weights were expected.
+/// Throws InputError that names the expression (by index, or by `names` when given) whose weight is above
+/// kLargestWeight or NaN, or says how many weights were expected.
 void requireWeights(std::span<const float> beta, std::span<const std::string> names);
 
 }  // namespace facezip::blend

@@ -92,8 +92,9 @@ std::span<const float> checkedWeights(const facezip_package* package, const floa
   }
   require(weights != nullptr, "weights is null");
   for (std::size_t n = 0; n < count; ++n) {
-    if (!std::isfinite(weights[n])) {
-      throw ArgumentError(fmt::format("weights[{}] ({}): expected a finite number, got {}", n, names[n], weights[n]));
+    if (!(std::abs(weights[n]) <= facezip::kLargestWeight)) {
+      throw ArgumentError(fmt::format("weights[{}] ({}): expected a number of at most {:g} either way, got {}", n,
+                                      names[n], facezip::kLargestWeight, weights[n]));
     }
   }
   return {weights, count};

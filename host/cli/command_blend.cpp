@@ -31,6 +31,7 @@ void blendFrames(const Arguments& arguments, Progress& progress) {
   const Package package = Package::open(arguments.package);
   const AnimationClip clip = readFrames(arguments, package);
   const FramePattern pattern(arguments.output, !arguments.animation.empty(), package.maps().size());
+  pattern.requireFits(package);
   Blender blender(package, openDevice(arguments.device, &progress));
   if (!arguments.gain.empty()) blender.setGain(readGain(arguments.gain, package));
   std::vector<std::byte> frame;

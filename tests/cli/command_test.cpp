@@ -117,6 +117,29 @@ TEST_F(Command, ReconstructWritesEveryMapOfTheNamedExpressions) {
   EXPECT_EQ(test::filesBelow(out / "all").size(), 2u + 12u);
 }
 
+TEST_F(Command, NothingIsWrittenIntoThePackageThatIsRead) {
+  const std::set<std::string> before = test::filesBelow(package());
+  for (const std::string& command :
+       {"reconstruct " + quoted(package()) + " --output " + quoted(package() / "albedo"),
+        "blend " + quoted(package()) + " --weights e02=1 --output " + quoted(package() / "{map}/neutral.png")}) {
+    const test::CommandResult result = runFacezip(command);
+    EXPECT_EQ(result.exit_code, cli::kExitOutput) << command;
+    EXPECT_THAT(result.error, HasSubstr("the package itself"));
+  }
+  EXPECT_EQ(test::filesBelow(package()), before);
+}
+
+TEST_F(Command, FormatsThatWouldLoseChannelsAreRefusedByTheNameThatWasGiven) {
+  const test::TemporaryDirectory out;
+  for (const char* name : {"frame.dpx", "frame.hdr", "frame.xyz"}) {
+    const test::CommandResult result =
+        runFacezip("blend " + quoted(package()) + " --weights e02=1 --output " + quoted(out / name));
+    EXPECT_EQ(result.exit_code, cli::kExitInput) << name;
+    EXPECT_THAT(result.error, HasSubstr((out / "frame.albedo").string())) << name;
+  }
+  EXPECT_TRUE(fs::is_empty(out.path()));
+}
+
 TEST_F(Command, BlendOfOneExpressionIsItsReconstruction) {
   const test::TemporaryDirectory out;
   ASSERT_EQ(

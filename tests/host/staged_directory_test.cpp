@@ -115,6 +115,27 @@ TEST(StagedDirectory, KeepsWhatEnginesLayBesideFilesThatStay) {
   EXPECT_THROW(replace(folder / "a"), OutputError);
 }
 
+TEST(StagedDirectory, CachesOfEnginesGo) {
+  const test::TemporaryDirectory folder;
+  replace(folder / "a");
+  fs::create_directory(folder / "a/.import");
+  io::writeTextFile(folder / "a/.import/x.png-0123.stex", "made of x.png");
+  EXPECT_NO_THROW(replace(folder / "a"));
+  EXPECT_FALSE(fs::exists(folder / "a/.import"));
+}
+
+TEST(RequireOutside, KnowsAFolderByEveryName) {
+  const test::TemporaryDirectory folder;
+  fs::create_directories(folder / "a/b");
+  fs::create_directory_symlink("a", folder / "link");
+  for (const char* inside : {"a", "a/", "a/b/c/d.png", "link/x.png", "a/../a/x.png", "link/b/.."}) {
+    EXPECT_THROW(io::requireOutside(folder / inside, folder / "a", "the package"), OutputError) << inside;
+  }
+  for (const char* outside : {"x.png", "ab/x.png", "a/../x.png", "link/../x.png"}) {
+    EXPECT_NO_THROW(io::requireOutside(folder / outside, folder / "a", "the package")) << outside;
+  }
+}
+
 TEST(StagedDirectory, ALinkStandsForTheDirectoryItLeadsTo) {
   const test::TemporaryDirectory folder;
   fs::create_directory(folder / "store");

@@ -10,9 +10,10 @@
 
 namespace facezip {
 
-/// Writes one blended frame of `map`; the extension decides the format, which must be able to hold the map's sample
-/// type. The file appears whole or not at all; directories above it are made. frame  map.frameBytes() bytes, as
-/// Blender::blend() gives them Throws InputError for an extension that no format has, OutputError.
+/// Writes one blended frame of `map`; the extension decides the format. The file appears whole or not at all;
+/// directories above it are made.
+/// frame  map.frameBytes() bytes, as Blender::blend() gives them
+/// Throws InputError for a format that is not known or could not hold the frame, OutputError.
 void writeFrame(const std::filesystem::path& file, const PackageMap& map, std::span<const std::byte> frame);
 
 /// Names of frame files from a pattern: "%d" or "%04d" stands for the number of the frame, "{map}" for the map's name.
@@ -23,6 +24,9 @@ class FramePattern {
   /// Throws InputError naming what is missing or malformed.
   FramePattern(std::string pattern, bool numbered, std::size_t maps);
   std::filesystem::path file(int frame, const std::string& map) const;
+  /// Throws, before any work, InputError where frames of a map would lose something in that format, OutputError where
+  /// they would lie in the package.
+  void requireFits(const Package& package) const;
 
  private:
   void findNumber();

@@ -8,12 +8,16 @@
 #include <utility>
 
 #include "image/image_file.hpp"
+#include "image/output_formats.hpp"
 #include "io/staged_directory.hpp"
+#include "package/package_files.hpp"
 
 namespace facezip {
 namespace fs = std::filesystem;
 
 void writeFrame(const fs::path& file, const PackageMap& map, std::span<const std::byte> frame) {
+  const image::ImageShape shape = package::neutralShape(map);
+  image::requireFormat(file, shape);
   io::createDirectories(fs::absolute(file).parent_path());
   const fs::path target = io::fileToReplace(file);
   if (target.empty()) throw OutputError(file, "something that is no file is in the way", "choose another --output");
@@ -21,7 +25,7 @@ void writeFrame(const fs::path& file, const PackageMap& map, std::span<const std
   const fs::path partial = target.parent_path() / fmt::format(".partial-{}-{}", ::getpid(), target.filename().string());
   std::error_code error;
   try {
-    image::ImageWriter writer(partial, {map.width, map.height, map.channels, map.sample_type}, map.colour_space);
+    image::ImageWriter writer(partial, shape, map.colour_space);
     writer.writeRows(frame, map.height);
     writer.close();
     fs::rename(partial, target, error);
@@ -66,6 +70,14 @@ fs::path FramePattern::file(int frame, const std::string& map) const {
   fs::path path = name;
   if (append_map_) path.replace_extension("." + map + path.extension().string());
   return path;
+}
+
+void FramePattern::requireFits(const Package& package) const {
+  for (const PackageMap& map : package.maps()) {
+    const fs::path first = file(0, map.name);
+    image::requireFormat(first, package::neutralShape(map));
+    io::requireOutside(first, package.directory(), "the package itself");
+  }
 }
 
 }  // namespace facezip

@@ -103,6 +103,7 @@ void reconstruct(const Package& package, const fs::path& output, std::span<const
                  const Device& device, Progress& progress) {
   const std::vector<int> chosen = chosenExpressions(package, expressions);
   requireNoCapture(package, output);
+  io::requireOutside(output, package.directory(), "the package itself");
   io::StagedDirectory staged(output);
   progress.stage("reconstruct", totalRows(package, chosen.size()));
   const auto weights = blend::loadWeightMaps(package, device);

@@ -39,6 +39,9 @@ bool isCompanion(const fs::path& file) {
   return extension == ".meta" || extension == ".import" || extension == ".uid";
 }
 
+/// What Godot makes of a folder's files when it opens it as a project, and makes again.
+bool isCache(const fs::path& relative) { return *relative.begin() == ".import" || *relative.begin() == ".godot"; }
+
 /// Calls visit(path from `directory`) for all that is no folder.
 template <typename Visit>
 void forEachFile(const fs::path& directory, const Visit& visit) {
@@ -47,6 +50,10 @@ void forEachFile(const fs::path& directory, const Visit& visit) {
       visit(entry.path().lexically_relative(directory));
     }
   }
+}
+
+bool isWithin(const fs::path& inner, const fs::path& outer) {
+  return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
 }
 
 /// The directory that `target` is, or is a link to.
@@ -108,12 +115,9 @@ void StagedDirectory::makeStaging() {
 
 bool StagedDirectory::isOwn(const fs::path& relative) const {
   if (own_->files) {
-    const auto within = [](const fs::path& inner, const fs::path& outer) {
-      return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
-    };
     // The folders on the way to a file of ours are ours; so is all that lies in a folder that is named itself.
     return std::any_of(own_files_.begin(), own_files_.end(),
-                       [&](const fs::path& own) { return within(own, relative) || within(relative, own); });
+                       [&](const fs::path& own) { return isWithin(own, relative) || isWithin(relative, own); });
   }
   return fs::exists(fs::symlink_status(staging_ / *relative.begin()));
 }
@@ -121,7 +125,7 @@ bool StagedDirectory::isOwn(const fs::path& relative) const {
 /// Throws OutputError when a file of the target is neither the program's nor a companion of one.
 void StagedDirectory::requireNoStrangers() const {
   forEachFile(target_, [&](const fs::path& file) {
-    if (isOwn(file) || (isCompanion(file) && isOwn(fs::path(file).replace_extension()))) return;
+    if (isCache(file) || isOwn(file) || (isCompanion(file) && isOwn(fs::path(file).replace_extension()))) return;
     throw OutputError(target_, fmt::format("it holds \"{}\", which this command did not write", file.string()),
                       "move that elsewhere, or choose another --output");
   });
@@ -207,6 +211,12 @@ fs::path fileToReplace(const fs::path& path) {
   const fs::file_status status = fs::status(absolute, error);
   if (fs::exists(status) && !fs::is_regular_file(status)) return {};
   return fs::is_symlink(fs::symlink_status(absolute, error)) ? fs::weakly_canonical(absolute) : absolute;
+}
+
+void requireOutside(const fs::path& path, const fs::path& folder, const std::string& what) {
+  const fs::path inner = withoutTrailingSlash(fs::weakly_canonical(absoluteTarget(path)));
+  if (!isWithin(inner, withoutTrailingSlash(fs::weakly_canonical(folder)))) return;
+  throw OutputError(path, fmt::format("it lies in {}, {}", folder.string(), what), "choose another --output");
 }
 
 void writeTextFileAtomically(const fs::path& path, const std::string& text) {

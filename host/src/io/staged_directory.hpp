@@ -66,6 +66,9 @@ void writeTextFile(const std::filesystem::path& path, const std::string& text);
 /// else stands there (a device, a pipe), which is to be written to, never renamed over.
 std::filesystem::path fileToReplace(const std::filesystem::path& path);
 
+/// Throws OutputError where `path`, there or not, is `folder` or lies in it; `what` says whose the folder is.
+void requireOutside(const std::filesystem::path& path, const std::filesystem::path& folder, const std::string& what);
+
 /// Writes `text` beside `path` and renames it into place, so that a reader sees the whole file or the old one. Devices
 /// and pipes are written to.
 void writeTextFileAtomically(const std::filesystem::path& path, const std::string& text);

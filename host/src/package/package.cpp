@@ -16,6 +16,8 @@ namespace {
 
 std::string readDescription(const fs::path& file) {
   constexpr std::uintmax_t kLargest = 64u << 20;  // a package of 65536 expressions stays below
+  std::error_code ignored;
+  if (fs::is_fifo(file, ignored)) throw InputError({file.string(), "", "a file", "a pipe", ""});
   return io::readFile(file, "the description of a facezip package", "name a directory that `facezip compress` wrote",
                       kLargest);
 }

@@ -1,6 +1,7 @@
 // The page of `facezip view`: a head whose mesh and textures follow one set of sliders.
 import { PackageTextures, memory } from './blend.js';
 import { readClip } from './clip.js';
+import { fileReader } from './files.js';
 import { cellGains, fromPreset, toPreset, unitGains } from './gains.js';
 import { legends, maskPicture, shadedMaterial, viewMaterial } from './materials.js';
 import { readDescription, readMasks } from './package.js';
@@ -26,15 +27,17 @@ class Viewer {
       throw new Error('This page needs textures of floats that can be drawn to (EXT_color_buffer_float), which this ' +
         'graphics driver does not offer.');
     }
-    this.description = await readDescription();
+    const readFile = fileReader();
+    this.description = await readDescription(readFile);
     this.requireLayers(renderer);
     byId('name').textContent = document.title = this.description.name || 'facezip';
     this.names = this.description.expressions;
     this.weights = new Float32Array(this.names.length);
     this.gains = unitGains(this.description);
-    this.textures = await PackageTextures.load(this.description, renderer, (what) => byId('stats').textContent = `loading ${what}`);
-    this.masks = await readMasks(this.description);
-    this.morphs = this.description.mesh ? await this.head.loadMesh(this.description.mesh.file) : [];
+    this.textures = await PackageTextures.load(readFile, this.description, renderer,
+      (what) => byId('stats').textContent = `loading ${what}`);
+    this.masks = await readMasks(readFile, this.description);
+    this.morphs = this.description.mesh ? await this.head.loadMesh(readFile, this.description.mesh.file) : [];
     this.uniforms = { detail: { value: true }, layer: { value: 0 }, picture: { value: null } };
     this.buildPanel();
     this.resize();

@@ -198,6 +198,14 @@ def first_of(inputs, *names):
     return inputs[next(name for name in names if name in inputs)]
 
 
+# What a map is in a physical material, by the first of these parts that its name holds: as exports for engines have it.
+ROLES = (("albedo", "albedo"), ("diffuse", "albedo"), ("normal", "normal"), ("roughness", "roughness"))
+
+
+def role_of(name):
+    return next((role for part, role in ROLES if part in name.lower()), None)
+
+
 def build(package):
     bpy.ops.import_scene.gltf(filepath=os.path.join(HERE, "scene.gltf"))
     face = next(o for o in bpy.context.selected_objects if o.type == "MESH")
@@ -212,20 +220,23 @@ def build(package):
     uv = graph.node("ShaderNodeUVMap").outputs[0]
     controls = controls_of(face, package["expressions"])
     betas = beta_nodes(graph, face, package["expressions"], controls)
-    values = {}
+    values, taken = {}, set()
     for blend_map in package["maps"]:
         if not blend_map["neutral"]["file"].endswith(".png"):
             continue
         value = values[blend_map["name"]] = blended_map(graph, uv, package, blend_map, betas)
-        name = blend_map["name"].lower()
-        if "albedo" in name or "diffuse" in name:
+        role = role_of(blend_map["name"])
+        if role in taken:  # the first map of a role has it
+            continue
+        taken.add(role)
+        if role == "albedo":
             linear = blend_map["colour_space"] == "linear"
             graph.put(shader.inputs["Base Color"], value if linear else to_linear(graph, value))
-        elif "normal" in name:
+        elif role == "normal":
             normal = graph.node("ShaderNodeNormalMap")
             graph.put(normal.inputs["Color"], value)
             graph.put(shader.inputs["Normal"], normal.outputs[0])
-        elif "roughness" in name:
+        elif role == "roughness":
             graph.put(shader.inputs["Roughness"], graph.separate(value)[0])
     return face, graph, values, controls
 

@@ -85,7 +85,8 @@ const variant = join(work, 'variant_package');
 cpSync(join(packages, 'head'), variant, { recursive: true });
 const description = read(variant);
 const albedo = { ...description.maps.find((map) => map.name === 'albedo'), colour_space: 'linear' };
-const maps = [albedo, withFewerChannels(variant, albedo, 1), withFewerChannels(variant, albedo, 2)];
+const scatter = { ...description.maps.find((map) => map.name === 'normal'), name: 'albedo_scatter' };  // the second of its role
+const maps = [albedo, scatter, withFewerChannels(variant, albedo, 1), withFewerChannels(variant, albedo, 2)];
 writeFileSync(join(variant, 'package.json'), JSON.stringify({ ...description, maps }));
 checkExport(variant, join(work, 'variant'));
 

@@ -124,6 +124,17 @@ await run('a linear albedo is shaded as it is', async () => {
   const changed = changedShare(expected, await shoot({}, 'neutral_linear'), 0);
   assert.ok(changed < 0.001, `${changed} of the picture changed`);
 });
+await run('the first map of a role has it', async () => {
+  const other = join(work, 'roles', 'package');
+  cpSync(join(work, 'face', 'package'), other, { recursive: true });
+  const [albedo, normal] = ['albedo', 'normal'].map((name) => description.maps.find((map) => map.name === name));
+  const maps = [{ ...albedo, name: 'diffuse' }, { ...normal, name: 'albedo' }, normal, { ...albedo, name: 'normal_2' }];
+  writeFileSync(join(other, 'package.json'), JSON.stringify({ ...description, maps }));
+  await page.evaluate(() => globalThis.load('/face/'));
+  const expected = await shoot({}, 'neutral');
+  await page.evaluate(() => globalThis.load('/roles/'));
+  assert.equal(changedShare(expected, await shoot({}, 'neutral_roles'), 0), 0);
+});
 await run('no console errors', () => assert.deepEqual(page.errors, []));
 await browser.close();
 server.close();

@@ -3,7 +3,7 @@ import { PackageTextures, memory } from './blend.js';
 import { readClip } from './clip.js';
 import { fileReader } from './files.js';
 import { cellGains, fromPreset, toPreset, unitGains } from './gains.js';
-import { legends, maskPicture, shadedMaterial, viewMaterial } from './materials.js';
+import { legends, mapOfRole, maskPicture, shadedMaterial, viewMaterial } from './materials.js';
 import { readDescription, readMasks } from './package.js';
 import { byId, download, fail, filterRows, note, onFile, options, showLegend, slider } from './panel.js';
 import { HeadScene } from './scene.js';
@@ -173,7 +173,7 @@ class Viewer {
   showMode() {
     const mode = byId('mode').value;
     const map = this.textures.maps[byId('map').selectedIndex];
-    byId('detail-row').hidden = mode !== 'shaded' || !this.textures.maps.some((each) => each.name.toLowerCase().includes('normal'));
+    byId('detail-row').hidden = mode !== 'shaded' || !mapOfRole(this.textures, 'normal');
     showLegend(legends[mode]);
     byId('map-row').hidden = ['shaded', 'masks', 'regions'].includes(mode);
     byId('layer-row').hidden = !['difference', 'weights'].includes(mode);

@@ -115,6 +115,32 @@ const tests = {
     await page.click('#neutral');
   },
 
+  async 'a clip is one that blend --animation takes'(page) {
+    const clip = join(work, 'strict.csv');
+    const taken = (text) => {
+      writeFileSync(clip, text);
+      return spawnSync(facezip, ['blend', packagePath, '--animation', clip, '--output', join(work, 'strict', '%04d.{map}.png')]).status === 0;
+    };
+    const said = async (text) => {
+      writeFileSync(clip, text);
+      await page.evaluate(() => { document.getElementById('note').textContent = ''; });
+      await page.setInputFiles('#clip', clip);
+      await page.waitForFunction(() => document.getElementById('note').textContent !== '');
+      return page.locator('#note').textContent();
+    };
+    const weights = ['0.5', '"0.5"', ' "+.5" ', '5.', '-1e-50', '+-1', '0x10', '0b1', '1e39', '1e400', '1_0', '1e', '.', '+', '-+1', '', '""', 'inf',
+      'nan', '\u00a00.5', '1;5'];
+    for (const text of [...weights.map((weight) => `${names[0]}\n${weight}\n`), `"frame", "${names[0]}"\r\n1,1\r\n`, `"${names[0]}\n1\n`]) {
+      const wanted = taken(text);
+      assert.equal((await said(text)).includes('1 frames'), wanted, JSON.stringify(text));
+    }
+    assert.match(await said(`${names[0]}\n-1000000\n`), /1 frames/);
+    for (const weight of ['1000001', '-2e6', '1e39', '0x10']) {
+      assert.match(await said(`${names[0]}\n${weight}\n`), /line 2, column 1: ".*" is not a number from -1000000 to 1000000/);
+    }
+    await page.click('#neutral');
+  },
+
   async 'every view draws something of its own'(page) {
     await moveSlider(page, '#expressions', names[0], 1);
     let before = await screenshot(page, 'shaded');

@@ -141,6 +141,26 @@ const tests = {
     await page.click('#neutral');
   },
 
+  async 'sliders say what is in force beyond their ends'(page) {
+    const shown = (parent, name) => page.locator(`${parent} label:has(input[name="${name}"]) output`).textContent();
+    const clip = join(work, 'beyond.csv');
+    writeFileSync(clip, `${names[0]},${names[1]}\n-0.5,1.25\n`);
+    await page.setInputFiles('#clip', clip);
+    await page.waitForFunction(() => document.getElementById('note').textContent.includes('beyond.csv: 1 frames'));
+    await page.waitForFunction((name) => document.querySelector(`#expressions input[name="${name}"]`).value === '1', names[1]);
+    assert.equal(await shown('#expressions', names[0]), '-0.50');
+    assert.equal(await shown('#expressions', names[1]), '1.25');
+    await page.click('#neutral');
+    const preset = { format: 'facezip-gains', version: 1, package: description.name, expressions: { [names[0]]: 16 } };
+    await page.evaluate((text) => globalThis.facezip.setPreset(text), JSON.stringify(preset));
+    assert.equal(await shown('#gains', names[0]), '16.00');
+    await page.click('#reset');
+    assert.equal(await shown('#gains', names[0]), '1.00');
+    await moveSlider(page, '#expressions', names[0], 0.3);
+    assert.equal(await shown('#expressions', names[0]), '0.30');
+    await page.click('#neutral');
+  },
+
   async 'every view draws something of its own'(page) {
     await moveSlider(page, '#expressions', names[0], 1);
     let before = await screenshot(page, 'shaded');

@@ -6,7 +6,7 @@ import { createServer } from 'node:http';
 import { dirname, extname, join, normalize } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { decode, encode } from 'fast-png';
-import { blendDifference, changedShare, launch, openPage, results, run } from './common.mjs';
+import { blendDifference, changedShare, launch, limitDriver, openPage, results, run, tooMuch } from './common.mjs';
 
 const [facezip, browserPath, packages, work] = process.argv.slice(2);
 const packagePath = join(packages, 'head');
@@ -134,6 +134,14 @@ await run('the first map of a role has it', async () => {
   const expected = await shoot({}, 'neutral');
   await page.evaluate(() => globalThis.load('/roles/'));
   assert.equal(changedShare(expected, await shoot({}, 'neutral_roles'), 0), 0);
+});
+await run('it says what a graphics driver takes too little of', async () => {
+  for (const [limits, text] of tooMuch) {
+    await page.evaluate(limitDriver, limits);
+    const said = await page.evaluate(() => globalThis.loadFace('/other/').then(() => 'loaded', (error) => error.message));
+    await page.evaluate(() => globalThis.unlimited());
+    assert.equal(said, text);
+  }
 });
 await run('no console errors', () => assert.deepEqual(page.errors, []));
 await browser.close();

@@ -7,7 +7,7 @@ import { cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } fr
 import { createServer } from 'node:net';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
-import { blendDifference, changedShare, launch, openPage, results, run } from './common.mjs';
+import { blendDifference, changedShare, launch, limitDriver, openPage, results, run, tooMuch } from './common.mjs';
 
 const [facezip, browserPath, packages, work] = process.argv.slice(2);
 const packagePath = join(packages, 'head');
@@ -253,6 +253,18 @@ await run('100 expressions', async () => {
   assert.ok(changedShare(before, await screenshot(crowd, 'many_last')) > 0.001);
   assert.deepEqual(crowd.errors, []);
   await crowd.close();
+  many.stop();
+});
+await run('it says what a graphics driver takes too little of', async () => {
+  const many = await serve(join(packages, 'many'));
+  for (const [limits, text] of tooMuch) {
+    const refused = await browser.newPage();
+    await refused.addInitScript(limitDriver, limits);
+    await refused.goto(many.url);
+    await refused.waitForSelector('#message:not([hidden])');
+    assert.equal(await refused.locator('#message').textContent(), text);
+    await refused.close();
+  }
   many.stop();
 });
 await run('a rig is posed by its shapes, mesh and textures', async () => {

@@ -29,7 +29,6 @@ class Viewer {
     }
     const readFile = fileReader();
     this.description = await readDescription(readFile);
-    this.requireLayers(renderer);
     byId('name').textContent = document.title = this.description.name || 'facezip';
     this.names = this.description.expressions;
     this.weights = new Float32Array(this.names.length);
@@ -45,16 +44,6 @@ class Viewer {
     this.showMode();
     if (!this.description.mesh) note('The package has no mesh: its textures are shown flat.');
     else if (!this.morphs.length) note('The capture had no meshes of expressions: the head does not move.');
-  }
-
-  requireLayers(renderer) {
-    const gl = renderer.getContext();
-    const most = gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);
-    const size = gl.getParameter(gl.MAX_TEXTURE_SIZE);
-    const needed = this.description.expressions.length * this.description.weights[0].files.length;
-    const side = Math.max(...this.description.maps.flatMap((map) => [map.width, map.height]));
-    if (needed > most) throw new Error(`The package has ${needed} weight maps; this graphics driver takes ${most} in a texture array.`);
-    if (side > size) throw new Error(`The textures are ${side} texels wide; this graphics driver takes ${size}.`);
   }
 
   buildPanel() {

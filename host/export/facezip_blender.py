@@ -144,22 +144,51 @@ def to_linear(graph, value):
     return graph.combine(*[channel(c) for c in graph.separate(value)])
 
 
-def beta_nodes(graph, face, names):
-    """A value for every expression, driven by its shape key where there is one, else by a property of the object."""
-    keys = face.data.shape_keys
+def short_name(name, taken):
+    """A name that Blender holds whole, at most 63 bytes, and none of `taken`: cut, .001 and so on where the rest is the
+    same, as the importer of glTF names shape keys."""
+    for number in range(len(taken) + 1):
+        suffix = f".{number:03}" if number else ""
+        short = name.encode()[:63 - len(suffix)].decode(errors="ignore") + suffix
+        if short not in taken:
+            return short
+
+
+def controls_of(face, names):
+    """What moves every expression, by its whole name: a shape key where there is one, else the name of a property of the
+    object. Says which names were shortened."""
+    with open(os.path.join(HERE, "scene.gltf"), encoding="utf-8") as file:
+        targets = json.load(file)["meshes"][0].get("extras", {}).get("targetNames", [])
+    keys = face.data.shape_keys.key_blocks[1:] if targets else []  # in the order of the file, after the basis
+    controls = {name: key for name, key in zip(targets, keys) if name in names}
+    properties = set()
+    for name in names:
+        if name not in controls:
+            controls[name] = short_name(name, properties)
+            properties.add(controls[name])
+            face[controls[name]] = 0.0
+        control = controls[name]
+        short = control if isinstance(control, str) else control.name
+        if short != name:
+            print(f"facezip_blender.py: in Blender, {name} is called {short}")
+    return controls
+
+
+def beta_nodes(graph, face, names, controls):
+    """A value for every expression, driven by what moves it."""
     sockets = []
     for name in names:
         made = graph.node("ShaderNodeValue", label=name)
         curve = made.outputs[0].driver_add("default_value")
         curve.driver.type = "AVERAGE"
         target = curve.driver.variables.new().targets[0]
-        if keys and name in keys.key_blocks:
-            target.id_type, target.id = "KEY", keys
-            target.data_path = f'key_blocks["{bpy.utils.escape_identifier(name)}"].value'
-        else:
-            face[name] = 0.0
+        control = controls[name]
+        if isinstance(control, str):
             target.id = face
-            target.data_path = f'["{bpy.utils.escape_identifier(name)}"]'
+            target.data_path = f'["{bpy.utils.escape_identifier(control)}"]'
+        else:
+            target.id_type, target.id = "KEY", face.data.shape_keys
+            target.data_path = f'key_blocks["{bpy.utils.escape_identifier(control.name)}"].value'
         sockets.append(made.outputs[0])
     return sockets
 
@@ -167,6 +196,14 @@ def beta_nodes(graph, face, names):
 def first_of(inputs, *names):
     """The input that has one of the names: Blender renames them."""
     return inputs[next(name for name in names if name in inputs)]
+
+
+# What a map is in a physical material, by the first of these parts that its name holds: as exports for engines have it.
+ROLES = (("albedo", "albedo"), ("diffuse", "albedo"), ("normal", "normal"), ("roughness", "roughness"))
+
+
+def role_of(name):
+    return next((role for part, role in ROLES if part in name.lower()), None)
 
 
 def build(package):
@@ -181,37 +218,41 @@ def build(package):
     shader.inputs["Roughness"].default_value = 0.5
     first_of(shader.inputs, "Specular IOR Level", "Specular").default_value = 0.35  # since Blender 4.0; before
     uv = graph.node("ShaderNodeUVMap").outputs[0]
-    betas = beta_nodes(graph, face, package["expressions"])
-    values = {}
+    controls = controls_of(face, package["expressions"])
+    betas = beta_nodes(graph, face, package["expressions"], controls)
+    values, taken = {}, set()
     for blend_map in package["maps"]:
         if not blend_map["neutral"]["file"].endswith(".png"):
             continue
         value = values[blend_map["name"]] = blended_map(graph, uv, package, blend_map, betas)
-        name = blend_map["name"].lower()
-        if "albedo" in name or "diffuse" in name:
+        role = role_of(blend_map["name"])
+        if role in taken:  # the first map of a role has it
+            continue
+        taken.add(role)
+        if role == "albedo":
             linear = blend_map["colour_space"] == "linear"
             graph.put(shader.inputs["Base Color"], value if linear else to_linear(graph, value))
-        elif "normal" in name:
+        elif role == "normal":
             normal = graph.node("ShaderNodeNormalMap")
             graph.put(normal.inputs["Color"], value)
             graph.put(shader.inputs["Normal"], normal.outputs[0])
-        elif "roughness" in name:
+        elif role == "roughness":
             graph.put(shader.inputs["Roughness"], graph.separate(value)[0])
-    return face, graph, values
+    return face, graph, values, controls
 
 
-def set_weights(face, text):
+def set_weights(face, controls, text):
     for part in filter(None, (text or "").split(",")):
-        name, value = part.split("=")
-        keys = face.data.shape_keys
-        if keys and name in keys.key_blocks:
-            keys.key_blocks[name].slider_min = -10
-            keys.key_blocks[name].slider_max = 10
-            keys.key_blocks[name].value = float(value)
-        elif name in face:
-            face[name] = float(value)
-        else:
+        name, _, value = part.rpartition("=")  # names may hold some, too
+        control = controls.get(name)
+        if control is None:
             raise SystemExit(f"facezip_blender.py: no expression {name}")
+        if isinstance(control, str):
+            face[control] = float(value)
+        else:
+            control.slider_min = -10
+            control.slider_max = 10
+            control.value = float(value)
     bpy.context.view_layer.update()
 
 
@@ -280,8 +321,8 @@ def main(arguments):
         raise SystemExit(f"facezip_blender.py: unknown option {' '.join(unknown) or arguments[-1]}")
     with open(os.path.join(HERE, "package", "package.json"), encoding="utf-8") as file:
         package = json.load(file)
-    face, graph, values = build(package)
-    set_weights(face, options.get("--weights"))
+    face, graph, values, controls = build(package)
+    set_weights(face, controls, options.get("--weights"))
     if "--bake" in options:
         bake(face, graph, package, values, options["--bake"])
     if "--render" in options:

@@ -17,8 +17,8 @@ assert script["first_of"]({"Specular IOR Level": "since", "Specular Tint": "othe
 
 with open(os.path.join(folder, "package", "package.json"), encoding="utf-8") as stream:
     package = json.load(stream)
-face, graph, values = script["build"](package)
-script["set_weights"](face, weights)
+face, graph, values, controls = script["build"](package)
+script["set_weights"](face, controls, weights)
 shader = next(node for node in graph.tree.nodes if node.type == "BSDF_PRINCIPLED")
 specular = [shader.inputs[name].default_value for name in names if name in shader.inputs]
 assert abs(specular[0] - 0.35) < 1e-6, specular

@@ -85,6 +85,27 @@ const variant = join(work, 'variant_package');
 cpSync(join(packages, 'head'), variant, { recursive: true });
 const description = read(variant);
 const albedo = { ...description.maps.find((map) => map.name === 'albedo'), colour_space: 'linear' };
-const maps = [albedo, withFewerChannels(variant, albedo, 1), withFewerChannels(variant, albedo, 2)];
+const scatter = { ...description.maps.find((map) => map.name === 'normal'), name: 'albedo_scatter' };  // the second of its role
+const maps = [albedo, scatter, withFewerChannels(variant, albedo, 1), withFewerChannels(variant, albedo, 2)];
 writeFileSync(join(variant, 'package.json'), JSON.stringify({ ...description, maps }));
 checkExport(variant, join(work, 'variant'));
+
+/** Names of 164 bytes, alike for longer than Blender's 63: two of shape keys, two of properties. */
+function checkLongNames(packagePath, folder) {
+  const stem = `${'a'.repeat(62)}\u00e9${'b'.repeat(98)}`;
+  const renamed = names.map((name, n) => (n < 4 ? `${stem}=${n}` : name));
+  cpSync(join(packages, 'head'), packagePath, { recursive: true });
+  const { maps, ...rest } = read(packagePath);
+  const map = maps.find((each) => each.name === 'albedo');
+  writeFileSync(join(packagePath, 'package.json'), JSON.stringify({ ...rest, expressions: renamed, maps: [map] }));
+  execFileSync(facezip, ['export', packagePath, '--target', 'blender', '--output', folder]);
+  const scene = JSON.parse(readFileSync(join(folder, 'scene.gltf')));
+  scene.meshes[0].extras.targetNames = names.map((name, n) => (n === 0 || n === 3 ? renamed[n] : name));
+  writeFileSync(join(folder, 'scene.gltf'), JSON.stringify(scene));
+  const given = [0.6, 0.3, 0.5, 0.4].map((weight, n) => `${renamed[n]}=${weight}`).join(',');
+  execFileSync(facezip, ['blend', packagePath, '--weights', given, '--output', join(folder, 'expected.png')]);
+  const file = join(folder, 'albedo.exr');
+  compare('long names', map, bake(file, join(folder, 'facezip_blender.py'), '--weights', given, '--bake', `albedo=${file}`),
+    decode(readFileSync(join(folder, 'expected.png'))));
+}
+checkLongNames(join(work, 'long_package'), join(work, 'long'));

@@ -51,6 +51,27 @@ export async function blendDifference({ facezip, packagePath, description, work 
   return largest;
 }
 
+/** In a page: its graphics driver says to take no more than `values`, by names of WebGL; unlimited() undoes it. */
+export function limitDriver(values) {
+  const context = WebGL2RenderingContext.prototype;
+  const get = context.getParameter;
+  context.getParameter = function (what) {
+    const name = Object.keys(values).find((each) => this[each] === what);
+    return name ? values[name] : get.call(this, what);
+  };
+  globalThis.unlimited = () => { context.getParameter = get; };
+}
+
+/** Limits, and what is said where a package of 100 expressions of 5 differences asks for more. */
+export const tooMuch = [
+  [{ MAX_FRAGMENT_UNIFORM_VECTORS: 64 },
+    'expressions: expected at most 60 (this graphics driver takes 64 uniform vectors in a fragment shader), got 100: compress fewer expressions'],
+  [{ MAX_ARRAY_TEXTURE_LAYERS: 128 },
+    'expressions: expected at most 64 (this graphics driver takes 128 layers in a texture array), got 100: compress fewer expressions'],
+  [{ MAX_TEXTURE_SIZE: 32 },
+    'textures: expected at most 32 (texels a side that this graphics driver takes), got 64: compress smaller textures'],
+];
+
 /** Share of pixels that differ, left of a panel and above a line of text. */
 export function changedShare(before, after, panel = 330) {
   const [a, b] = [decode(before), decode(after)];

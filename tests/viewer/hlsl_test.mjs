@@ -2,7 +2,7 @@
 //   node hlsl_test.mjs FACEZIP CHROMIUM GLSLANG SPIRV_CROSS PACKAGES WORK_DIRECTORY
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { cpSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { decode } from 'fast-png';
 import { blendDifference, launch, openPage, results, run } from './common.mjs';
@@ -125,6 +125,44 @@ for (const name of ['head', 'many']) {
     });
   }
 }
+await run('unity: an albedo is shaded as the colour space of the project has it', async () => {
+  // Stored as sRGB or as linear light; projects are of either, too.
+  const light = (c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4);
+  const gamma = (c) => (c <= 0.0031308 ? 12.92 * c : 1.055 * c ** (1 / 2.4) - 0.055);
+  for (const stored of ['sRGB', 'linear']) {
+    const packagePath = join(work, `surface_${stored}`);
+    cpSync(join(packages, 'head'), packagePath, { recursive: true });
+    const description = JSON.parse(readFileSync(join(packagePath, 'package.json')));
+    const map = { ...description.maps.find((each) => each.name === 'albedo'), colour_space: stored };
+    writeFileSync(join(packagePath, 'package.json'), JSON.stringify({ ...description, maps: [map] }));
+    const folder = join(work, `surface_${stored}_unity`);
+    execFileSync(facezip, ['export', packagePath, '--target', 'unity', '--output', folder]);
+    const neutral = decode(readFileSync(join(packagePath, map.neutral.file)));
+    const names = [...readFileSync(join(folder, 'FaceZip.hlsl'), 'utf8').matchAll(/^Texture2D<float4> (\w+);/gm)].map((match) => match[1]);
+    const textures = Object.fromEntries(names.map((name) => [name, readTexture(join(folder, 'textures', `${name}.png`), true)]));
+    const { width, height } = map;
+    for (const project of ['linear', 'sRGB']) {
+      const glsl = toGlsl(folder, `surface_${project}`, `${project === 'sRGB' ? '#define UNITY_COLORSPACE_GAMMA\n' : ''}#include "FaceZip.hlsl"
+float4 main(float4 place : SV_Position) : SV_Target {
+  return float4(facezip_surface(place.xy / float2(${width}.0, ${height}.0)).albedo, 1.0);
+}`);
+      const weights = description.expressions.map(() => 0);
+      const drawn = Buffer.from(await page.evaluate(draw, { glsl, textures, weights, width, height }), 'latin1');
+      const convert = stored === project ? (c) => c : project === 'linear' ? light : gamma;
+      let largest = 0;
+      for (let y = 0; y < height; ++y) {
+        for (let x = 0; x < width; ++x) {
+          for (let c = 0; c < 3; ++c) {
+            const wanted = 255 * convert(neutral.data[((height - 1 - y) * width + x) * neutral.channels + c] / 255);
+            largest = Math.max(largest, Math.abs(wanted - drawn[4 * (y * width + x) + c]));
+          }
+        }
+      }
+      console.log(`  ${stored} in a project that is ${project}: largest difference ${largest.toFixed(3)}/255`);
+      assert.ok(largest <= 1, `${largest}/255`);
+    }
+  }
+});
 await run('no console errors', () => assert.deepEqual(page.errors, []));
 await browser.close();
 process.exit(results.failed ? 1 : 0);

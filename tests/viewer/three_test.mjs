@@ -6,7 +6,7 @@ import { createServer } from 'node:http';
 import { dirname, extname, join, normalize } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { decode, encode } from 'fast-png';
-import { blendDifference, changedShare, launch, openPage, results, run } from './common.mjs';
+import { blendDifference, changedShare, launch, limitDriver, openPage, results, run, tooMuch } from './common.mjs';
 
 const [facezip, browserPath, packages, work] = process.argv.slice(2);
 const packagePath = join(packages, 'head');
@@ -36,11 +36,12 @@ const pageText = `<!doctype html><meta charset="utf-8"><link rel="icon" href="da
     const camera = new THREE.PerspectiveCamera(30, 640 / 480, radius / 100, 100 * radius);
     camera.position.set(center.x, center.y, center.z + 4 * radius);
     globalThis.draw = (weights) => { face.setWeights(weights); renderer.render(scene, camera); };
-    globalThis.bake = (weights, map) => {
-      face.setWeights(weights);
-      return Array.from(face.textures.bake(renderer, map), (byte) => String.fromCharCode(byte)).join('');
-    };
     globalThis.face = face;
+  };
+  globalThis.loadFace = (folder) => loadFace(renderer, folder);
+  globalThis.bake = (face, weights, map) => {
+    face.setWeights(weights);
+    return Array.from(face.textures.bake(renderer, map), (byte) => String.fromCharCode(byte)).join('');
   };
   globalThis.ready = globalThis.load('/face/');
 </script>`;
@@ -69,12 +70,37 @@ await run('the module loads with the page\'s three.js', async () => {
   assert.deepEqual(await page.evaluate(() => globalThis.face.expressions), names);
 });
 await run('the shader computes what facezip blend does', async () => {
-  const bake = (from, weights, map) => from.evaluate(([given, i]) => globalThis.bake(given, i), [weights, map]);
+  const bake = (from, weights, map) => from.evaluate(([given, i]) => globalThis.bake(globalThis.face, given, i), [weights, map]);
   for (const weights of [{}, { [names[0]]: 1 }, { [names[1]]: 0.37, [names[3]]: 0.8 }]) {
     const largest = await blendDifference({ facezip, packagePath, description, work }, page, bake, weights);
     console.log(`  largest difference ${largest}/255 at ${JSON.stringify(weights)}`);
     assert.ok(largest <= (Object.keys(weights).length ? 1.5 : 0), `${largest}/255`);
   }
+});
+await run('two faces at once keep to their own packages', async () => {
+  const other = join(packages, 'many');
+  execFileSync(facezip, ['export', other, '--target', 'three', '--output', join(work, 'other')]);
+  await page.evaluate(async () => {
+    globalThis.two = await Promise.all(['/face/', '/other/'].map((folder) => globalThis.loadFace(folder)));
+  });
+  const compare = async (which, path, gain) => {
+    const bake = (from, weights, map) =>
+      from.evaluate(([face, given, i]) => globalThis.bake(globalThis.two[face], given, i), [which, weights, map]);
+    const own = JSON.parse(readFileSync(join(path, 'package.json')));
+    const largest = await blendDifference({ facezip, packagePath: path, description: own, work }, page, bake,
+      { [own.expressions.at(-1)]: 0.8 }, gain);
+    assert.ok(largest <= 1.5, `${largest}/255`);
+  };
+  await compare(0, packagePath);
+  await compare(1, other);
+  // Gains read masks, long after both were loaded.
+  const preset = join(work, 'gains.json');
+  const regions = { [description.regions[0].name]: 0.25, [description.regions[1].name]: 2 };
+  writeFileSync(preset, JSON.stringify({ format: 'facezip-gains', version: 1, package: description.name, regions }));
+  const text = readFileSync(preset, 'utf8');
+  await page.evaluate((given) => globalThis.two[0].setGains(given), text);
+  await compare(0, packagePath, ['--gain', preset]);
+  await compare(1, other);
 });
 await run('weights move the face', async () => {
   const neutral = await shoot({}, 'neutral');
@@ -97,6 +123,25 @@ await run('a linear albedo is shaded as it is', async () => {
   await page.evaluate(() => globalThis.load('/linear/'));
   const changed = changedShare(expected, await shoot({}, 'neutral_linear'), 0);
   assert.ok(changed < 0.001, `${changed} of the picture changed`);
+});
+await run('the first map of a role has it', async () => {
+  const other = join(work, 'roles', 'package');
+  cpSync(join(work, 'face', 'package'), other, { recursive: true });
+  const [albedo, normal] = ['albedo', 'normal'].map((name) => description.maps.find((map) => map.name === name));
+  const maps = [{ ...albedo, name: 'diffuse' }, { ...normal, name: 'albedo' }, normal, { ...albedo, name: 'normal_2' }];
+  writeFileSync(join(other, 'package.json'), JSON.stringify({ ...description, maps }));
+  await page.evaluate(() => globalThis.load('/face/'));
+  const expected = await shoot({}, 'neutral');
+  await page.evaluate(() => globalThis.load('/roles/'));
+  assert.equal(changedShare(expected, await shoot({}, 'neutral_roles'), 0), 0);
+});
+await run('it says what a graphics driver takes too little of', async () => {
+  for (const [limits, text] of tooMuch) {
+    await page.evaluate(limitDriver, limits);
+    const said = await page.evaluate(() => globalThis.loadFace('/other/').then(() => 'loaded', (error) => error.message));
+    await page.evaluate(() => globalThis.unlimited());
+    assert.equal(said, text);
+  }
 });
 await run('no console errors', () => assert.deepEqual(page.errors, []));
 await browser.close();

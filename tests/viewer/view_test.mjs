@@ -7,7 +7,7 @@ import { cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } fr
 import { createServer } from 'node:net';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
-import { blendDifference, changedShare, launch, openPage, results, run } from './common.mjs';
+import { blendDifference, changedShare, launch, limitDriver, openPage, results, run, tooMuch } from './common.mjs';
 
 const [facezip, browserPath, packages, work] = process.argv.slice(2);
 const packagePath = join(packages, 'head');
@@ -115,6 +115,52 @@ const tests = {
     await page.click('#neutral');
   },
 
+  async 'a clip is one that blend --animation takes'(page) {
+    const clip = join(work, 'strict.csv');
+    const taken = (text) => {
+      writeFileSync(clip, text);
+      return spawnSync(facezip, ['blend', packagePath, '--animation', clip, '--output', join(work, 'strict', '%04d.{map}.png')]).status === 0;
+    };
+    const said = async (text) => {
+      writeFileSync(clip, text);
+      await page.evaluate(() => { document.getElementById('note').textContent = ''; });
+      await page.setInputFiles('#clip', clip);
+      await page.waitForFunction(() => document.getElementById('note').textContent !== '');
+      return page.locator('#note').textContent();
+    };
+    const weights = ['0.5', '"0.5"', ' "+.5" ', '5.', '-1e-50', '+-1', '0x10', '0b1', '1e39', '1e400', '1_0', '1e', '.', '+', '-+1', '', '""', 'inf',
+      'nan', '\u00a00.5', '1;5'];
+    for (const text of [...weights.map((weight) => `${names[0]}\n${weight}\n`), `"frame", "${names[0]}"\r\n1,1\r\n`, `"${names[0]}\n1\n`]) {
+      const wanted = taken(text);
+      assert.equal((await said(text)).includes('1 frames'), wanted, JSON.stringify(text));
+    }
+    assert.match(await said(`${names[0]}\n-1000000\n`), /1 frames/);
+    for (const weight of ['1000001', '-2e6', '1e39', '0x10']) {
+      assert.match(await said(`${names[0]}\n${weight}\n`), /line 2, column 1: ".*" is not a number from -1000000 to 1000000/);
+    }
+    await page.click('#neutral');
+  },
+
+  async 'sliders say what is in force beyond their ends'(page) {
+    const shown = (parent, name) => page.locator(`${parent} label:has(input[name="${name}"]) output`).textContent();
+    const clip = join(work, 'beyond.csv');
+    writeFileSync(clip, `${names[0]},${names[1]}\n-0.5,1.25\n`);
+    await page.setInputFiles('#clip', clip);
+    await page.waitForFunction(() => document.getElementById('note').textContent.includes('beyond.csv: 1 frames'));
+    await page.waitForFunction((name) => document.querySelector(`#expressions input[name="${name}"]`).value === '1', names[1]);
+    assert.equal(await shown('#expressions', names[0]), '-0.50');
+    assert.equal(await shown('#expressions', names[1]), '1.25');
+    await page.click('#neutral');
+    const preset = { format: 'facezip-gains', version: 1, package: description.name, expressions: { [names[0]]: 16 } };
+    await page.evaluate((text) => globalThis.facezip.setPreset(text), JSON.stringify(preset));
+    assert.equal(await shown('#gains', names[0]), '16.00');
+    await page.click('#reset');
+    assert.equal(await shown('#gains', names[0]), '1.00');
+    await moveSlider(page, '#expressions', names[0], 0.3);
+    assert.equal(await shown('#expressions', names[0]), '0.30');
+    await page.click('#neutral');
+  },
+
   async 'every view draws something of its own'(page) {
     await moveSlider(page, '#expressions', names[0], 1);
     let before = await screenshot(page, 'shaded');
@@ -207,6 +253,18 @@ await run('100 expressions', async () => {
   assert.ok(changedShare(before, await screenshot(crowd, 'many_last')) > 0.001);
   assert.deepEqual(crowd.errors, []);
   await crowd.close();
+  many.stop();
+});
+await run('it says what a graphics driver takes too little of', async () => {
+  const many = await serve(join(packages, 'many'));
+  for (const [limits, text] of tooMuch) {
+    const refused = await browser.newPage();
+    await refused.addInitScript(limitDriver, limits);
+    await refused.goto(many.url);
+    await refused.waitForSelector('#message:not([hidden])');
+    assert.equal(await refused.locator('#message').textContent(), text);
+    await refused.close();
+  }
   many.stop();
 });
 await run('a rig is posed by its shapes, mesh and textures', async () => {

@@ -26,13 +26,25 @@ std::string call(const Package& package, const EngineMap& map) {
                      fmt::join(mapTextures(package, map), ", "));
 }
 
-/// One line of facezip_surface().
+// Projects in gamma space shade with sRGB.
+constexpr char kGammaSpace[] = R"(
+#ifdef UNITY_COLORSPACE_GAMMA
+float3 facezip_gamma(float3 c) { return lerp(1.055 * pow(c, 1.0 / 2.4) - 0.055, c * 12.92, step(c, 0.0031308)); }
+#endif
+)";
+
+/// One line of facezip_surface(), or a few.
 std::string surfaceLine(const Package& package, const EngineMap& map) {
   const std::string value = call(package, map);
   const char* colour = map.map.channels < 3 ? "rrr" : "rgb";
   switch (map.role) {
     case MapRole::kAlbedo:
-      if (map.map.colour_space == "linear") return fmt::format("  surface.albedo = saturate({}.{});\n", value, colour);
+      if (map.map.colour_space == "linear") {
+        return fmt::format(
+            "  surface.albedo = saturate({}.{});\n#ifdef UNITY_COLORSPACE_GAMMA\n"
+            "  surface.albedo = facezip_gamma(surface.albedo);\n#endif\n",
+            value, colour);
+      }
       return fmt::format(
           "  surface.albedo = {0}.{1};\n#ifdef UNITY_COLORSPACE_GAMMA\n  surface.albedo = saturate(surface.albedo);\n"
           "#else\n  surface.albedo = facezip_linear(surface.albedo);\n#endif\n",
@@ -58,6 +70,7 @@ std::string hlslFile(const Package& package, const std::vector<EngineMap>& maps)
   text += fmt::format("float fz_beta[{}];  // weights of the expressions, by FaceZipDriver\n",
                       package.expressions().size());
   text += hlslFunctions(package, maps, Rows::kFromBottom, "static ");
+  text += kGammaSpace;
   text +=
       "\nstruct FaceZipSurface {\n  float3 albedo;\n  float3 normal;  // tangent space\n  float roughness;\n};\n\n"
       "FaceZipSurface facezip_surface(float2 mesh_uv) {\n  float2 uv = float2(mesh_uv.x, 1.0 - mesh_uv.y);\n"

@@ -55,8 +55,8 @@ class Pass {
 
 /** One set of weight maps; step 1 of the header into `grid`. */
 class WeightSet {
-  static async load(description, set) {
-    return new WeightSet(description, set, await readWeights(description, set));
+  static async load(readFile, description, set) {
+    return new WeightSet(description, set, await readWeights(readFile, description, set));
   }
   constructor(description, set, layers) {
     const expressions = description.expressions.length;
@@ -104,10 +104,10 @@ class WeightSet {
 
 /** One map: three samplers, whatever C is: neutral, differences, weights. */
 class MapTextures {
-  static async load(description, map, set, floatsFilter) {
-    const neutral = await readImage(map.neutral.file);
+  static async load(readFile, description, map, set, floatsFilter) {
+    const neutral = await readImage(readFile, map.neutral.file);
     const differences = [];
-    for (const difference of map.differences) differences.push(await readImage(difference.file));
+    for (const difference of map.differences) differences.push(await readImage(readFile, difference.file));
     return new MapTextures(description, map, set, neutral, differences, floatsFilter);
   }
   constructor(description, map, set, neutral, differences, floatsFilter) {
@@ -170,9 +170,28 @@ export function blendHeader(differences) {
     ${blendSource}`;
 }
 
+/** Throws an Error where the package wants more of the graphics driver than it takes. */
+function requireLimits(description, renderer) {
+  const gl = renderer.getContext();
+  const require = (item, most, what, got, cure) => {
+    if (got > most) throw new Error(`${item}: expected at most ${most} (${what}), got ${got}: ${cure}`);
+  };
+  const expressions = (most, what) => require('expressions', most, what, description.expressions.length, 'compress fewer expressions');
+  const groups = Math.max(...description.weights.map((set) => set.files.length));
+  const layers = gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);
+  expressions(Math.floor(layers / groups), `this graphics driver takes ${layers} layers in a texture array`);
+  // fz_beta takes a vector for each of its floats; scales and offsets take their own.
+  const vectors = gl.getParameter(gl.MAX_FRAGMENT_UNIFORM_VECTORS);
+  expressions(vectors - 2 * groups, `this graphics driver takes ${vectors} uniform vectors in a fragment shader`);
+  const side = Math.max(...description.maps.flatMap((map) => [map.width, map.height]));
+  require('textures', gl.getParameter(gl.MAX_TEXTURE_SIZE), 'texels a side that this graphics driver takes', side,
+    'compress smaller textures');
+}
+
 /** All maps of a package on the GPU. */
 export class PackageTextures {
-  static async load(description, renderer, progress) {
+  static async load(readFile, description, renderer, progress) {
+    requireLimits(description, renderer);
     const textures = new PackageTextures();
     const floatsFilter = renderer.extensions.has('OES_texture_float_linear');
     textures.differences = description.differences;
@@ -180,11 +199,11 @@ export class PackageTextures {
     textures.maps = [];
     for (const set of description.weights) {
       progress('weight maps');
-      textures.sets.push(await WeightSet.load(description, set));
+      textures.sets.push(await WeightSet.load(readFile, description, set));
     }
     for (const map of description.maps) {
       progress(map.name);
-      textures.maps.push(await MapTextures.load(description, map, textures.sets[map.weights], floatsFilter));
+      textures.maps.push(await MapTextures.load(readFile, description, map, textures.sets[map.weights], floatsFilter));
     }
     return textures;
   }

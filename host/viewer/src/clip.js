@@ -1,11 +1,28 @@
-// A clip: a table with commas, a column for each expression, a row for each frame (docs/command_line.md).
+// A clip: a table with commas, a column for each expression, a row for each frame (docs/command_line.md). What
+// `facezip blend --animation` takes is taken, what it refuses is refused.
+
+const kLargest = 1e6;
+
+// Not String.trim(): it knows more blanks.
+const trimmed = (text) => text.replace(/^[ \t\r]+|[ \t\r]+$/g, '');
+
+/** Fields of one line, blanks and one pair of double quotes taken off. */
+function splitLine(line) {
+  return line.split(',').map((field) => trimmed(field).replace(/^"(.*)"$/s, '$1'));
+}
+
+/** The number that all of `text` says in decimal, as 32-bit floats have it; NaN if it says none. */
+function parseNumber(text) {
+  const decimal = /^\+?-?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i.test(trimmed(text));
+  return decimal ? Math.fround(trimmed(text).replace(/^\+/, '')) : NaN;
+}
 
 /** Frames of weights in the order of `names`. Throws an Error that names line and column. */
 export function readClip(text, names) {
-  const lines = text.replace(/^\ufeff/, '').split(/\r?\n/);
-  const first = lines.findIndex((line) => line.trim() !== '');
+  const lines = text.replace(/^\ufeff/, '').split('\n');
+  const first = lines.findIndex((line) => trimmed(line) !== '');
   if (first < 0) throw new Error('the clip is empty');
-  const header = lines[first].split(',').map((name) => name.trim());
+  const header = splitLine(lines[first]);
   const columns = header.map((name, i) => {
     const index = names.indexOf(name);
     if (index < 0 && /^(frame|time)$/i.test(name)) return -1;  // unless an expression is called that
@@ -15,16 +32,18 @@ export function readClip(text, names) {
   });
   const frames = [];
   lines.forEach((line, number) => {
-    if (number <= first || line.trim() === '') return;
-    const fields = line.split(',');
+    if (number <= first || trimmed(line) === '') return;
+    const fields = splitLine(line);
     if (fields.length !== columns.length) {
       throw new Error(`line ${number + 1}: ${fields.length} fields, the header has ${columns.length}`);
     }
     const frame = new Float32Array(names.length);
     fields.forEach((field, i) => {
       if (columns[i] < 0) return;
-      const weight = field.trim() === '' ? NaN : Number(field);
-      if (!Number.isFinite(weight)) throw new Error(`line ${number + 1}, column ${i + 1}: "${field.trim()}" is no number`);
+      const weight = parseNumber(field);
+      if (!(Math.abs(weight) <= kLargest)) {
+        throw new Error(`line ${number + 1}, column ${i + 1}: "${field}" is not a number from -${kLargest} to ${kLargest}`);
+      }
       frame[columns[i]] = weight;
     });
     frames.push(frame);

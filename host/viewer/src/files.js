@@ -2,10 +2,6 @@
 // scripts that hold them as text, since browsers let no page fetch from file:.
 
 const waiting = new Map();
-let base = '';
-
-/** Where the folder `package` lies, ending in a slash. */
-export function setBase(folder) { base = folder; }
 
 // Called by the scripts: package/NAME.js holds facezipFile("NAME", "base64").
 globalThis.facezipFile = (name, base64) => {
@@ -32,8 +28,10 @@ async function readUrl(name, url) {
   return new Uint8Array(await response.arrayBuffer());
 }
 
-/** Bytes of a file of the package. */
-export function readFile(name) {
-  const url = `${base}package/${name.split('/').map(encodeURIComponent).join('/')}`;
-  return globalThis.facezipScripts ? readScript(name, url) : readUrl(name, url);
+/** What gives the bytes of a file of the package by its name; `base` holds the folder `package`, and ends in a slash. */
+export function fileReader(base = '') {
+  return (name) => {
+    const url = `${base}package/${name.split('/').map(encodeURIComponent).join('/')}`;
+    return globalThis.facezipScripts ? readScript(name, url) : readUrl(name, url);
+  };
 }

@@ -3,10 +3,9 @@
 import { decode } from 'fast-png';
 import { EXRLoader } from 'three/examples/jsm/loaders/EXRLoader.js';
 import { FloatType } from 'three';
-import { readFile } from './files.js';
 
 /** { width, height, channels, data, most }: samples as they are stored, and the largest one (1 of floats). */
-export async function readImage(name) {
+export async function readImage(readFile, name) {
   const bytes = await readFile(name);
   return name.endsWith('.exr') ? decodeExr(bytes) : decodePng(bytes);
 }

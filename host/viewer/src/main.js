@@ -1,8 +1,9 @@
 // The page of `facezip view`: a head whose mesh and textures follow one set of sliders.
 import { PackageTextures, memory } from './blend.js';
 import { readClip } from './clip.js';
+import { fileReader } from './files.js';
 import { cellGains, fromPreset, toPreset, unitGains } from './gains.js';
-import { legends, maskPicture, shadedMaterial, viewMaterial } from './materials.js';
+import { legends, mapOfRole, maskPicture, shadedMaterial, viewMaterial } from './materials.js';
 import { readDescription, readMasks } from './package.js';
 import { byId, download, fail, filterRows, note, onFile, options, showLegend, slider } from './panel.js';
 import { HeadScene } from './scene.js';
@@ -26,15 +27,16 @@ class Viewer {
       throw new Error('This page needs textures of floats that can be drawn to (EXT_color_buffer_float), which this ' +
         'graphics driver does not offer.');
     }
-    this.description = await readDescription();
-    this.requireLayers(renderer);
+    const readFile = fileReader();
+    this.description = await readDescription(readFile);
     byId('name').textContent = document.title = this.description.name || 'facezip';
     this.names = this.description.expressions;
     this.weights = new Float32Array(this.names.length);
     this.gains = unitGains(this.description);
-    this.textures = await PackageTextures.load(this.description, renderer, (what) => byId('stats').textContent = `loading ${what}`);
-    this.masks = await readMasks(this.description);
-    this.morphs = this.description.mesh ? await this.head.loadMesh(this.description.mesh.file) : [];
+    this.textures = await PackageTextures.load(readFile, this.description, renderer,
+      (what) => byId('stats').textContent = `loading ${what}`);
+    this.masks = await readMasks(readFile, this.description);
+    this.morphs = this.description.mesh ? await this.head.loadMesh(readFile, this.description.mesh.file) : [];
     this.uniforms = { detail: { value: true }, layer: { value: 0 }, picture: { value: null } };
     this.buildPanel();
     this.resize();
@@ -42,16 +44,6 @@ class Viewer {
     this.showMode();
     if (!this.description.mesh) note('The package has no mesh: its textures are shown flat.');
     else if (!this.morphs.length) note('The capture had no meshes of expressions: the head does not move.');
-  }
-
-  requireLayers(renderer) {
-    const gl = renderer.getContext();
-    const most = gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);
-    const size = gl.getParameter(gl.MAX_TEXTURE_SIZE);
-    const needed = this.description.expressions.length * this.description.weights[0].files.length;
-    const side = Math.max(...this.description.maps.flatMap((map) => [map.width, map.height]));
-    if (needed > most) throw new Error(`The package has ${needed} weight maps; this graphics driver takes ${most} in a texture array.`);
-    if (side > size) throw new Error(`The textures are ${side} texels wide; this graphics driver takes ${size}.`);
   }
 
   buildPanel() {
@@ -170,7 +162,7 @@ class Viewer {
   showMode() {
     const mode = byId('mode').value;
     const map = this.textures.maps[byId('map').selectedIndex];
-    byId('detail-row').hidden = mode !== 'shaded' || !this.textures.maps.some((each) => each.name.toLowerCase().includes('normal'));
+    byId('detail-row').hidden = mode !== 'shaded' || !mapOfRole(this.textures, 'normal');
     showLegend(legends[mode]);
     byId('map-row').hidden = ['shaded', 'masks', 'regions'].includes(mode);
     byId('layer-row').hidden = !['difference', 'weights'].includes(mode);

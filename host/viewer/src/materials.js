@@ -27,15 +27,19 @@ function withUvs(shader) {
     .replace('#include <uv_vertex>', '#include <uv_vertex>\nfz_uv = uv;');
 }
 
-function mapNamed(textures, part) {
-  return textures.maps.find((map) => map.name.toLowerCase().includes(part));
+// What a map is in a physical material, by the first of these parts that its name holds: as exports for engines have it.
+const roles = [['albedo', 'albedo'], ['diffuse', 'albedo'], ['normal', 'normal'], ['roughness', 'roughness']];
+
+/** The first map of a role has it. */
+export function mapOfRole({ maps }, role) {
+  return maps.find(({ name }) => roles.find(([part]) => name.toLowerCase().includes(part))?.[1] === role);
 }
 
 /** Albedo (or the first map), normal and roughness, blended in one shader. uniforms.detail switches the normal map. */
 export function shadedMaterial(textures, uniforms) {
-  const albedo = mapNamed(textures, 'albedo') ?? mapNamed(textures, 'diffuse') ?? textures.maps[0];
-  const normal = mapNamed(textures, 'normal');
-  const roughness = mapNamed(textures, 'roughness');
+  const albedo = mapOfRole(textures, 'albedo') ?? textures.maps[0];
+  const normal = mapOfRole(textures, 'normal');
+  const roughness = mapOfRole(textures, 'roughness');
   const declarations = `${blendHeader(textures.differences)} ${tangentFrame} ${toLinear}
     ${albedo.source('albedo')} ${normal?.source('normal') ?? ''} ${roughness?.source('roughness') ?? ''}`;
   const stored = 'clamp(albedo_value(fz_uv).rgb, 0.0, 1.0)';

@@ -1,9 +1,8 @@
-// A package, read: docs/package_format.md.
+// A package, read: docs/package_format.md. `readFile` is of files.js.
 import { cut, readImage } from './images.js';
-import { readFile } from './files.js';
 
 /** package.json, after the checks that a page needs; `facezip view` has made all of them. */
-export async function readDescription() {
+export async function readDescription(readFile) {
   const description = JSON.parse(new TextDecoder().decode(await readFile('package.json')));
   if (description.format !== 'facezip-package') throw new Error('package.json is not of a facezip package');
   if (description.version !== 2) throw new Error(`package.json has version ${description.version}; this page reads 2`);
@@ -11,8 +10,8 @@ export async function readDescription() {
 }
 
 /** Weight maps of a set as images of a tile each, layer n * groups + group, without borders. */
-export async function readWeights(description, set) {
-  const images = await Promise.all(set.files.map(readImage));
+export async function readWeights(readFile, description, set) {
+  const images = await Promise.all(set.files.map((file) => readImage(readFile, file)));
   const layers = [];
   for (let n = 0; n < description.expressions.length; ++n) {
     const x = (n % set.columns) * (set.tile_width + 2 * set.border) + set.border;
@@ -23,10 +22,10 @@ export async function readWeights(description, set) {
 }
 
 /** Masks as arrays of cells, 0..1; none where the package has none. */
-export async function readMasks(description) {
+export async function readMasks(readFile, description) {
   const { masks } = description;
   if (!masks) return [];
-  const image = await readImage(masks.file);
+  const image = await readImage(readFile, masks.file);
   const tiles = [];
   for (let k = 0; k < masks.count; ++k) {
     const x = (k % masks.columns) * masks.tile_width;

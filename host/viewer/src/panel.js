@@ -11,15 +11,16 @@ export function slider(parent, name, least, most, value, changed) {
   const input = Object.assign(document.createElement('input'),
     { type: 'range', min: least, max: most, step: 0.01, value, name });
   const output = document.createElement('output');
-  const show = () => { output.textContent = Number(input.value).toFixed(2); };
-  input.addEventListener('input', () => { show(); changed(Number(input.value)); });
-  show();
+  // What is in force, which may lie beyond the slider's ends.
+  const show = (number) => { output.textContent = number.toFixed(2); };
+  input.addEventListener('input', () => { show(Number(input.value)); changed(Number(input.value)); });
+  show(value);
   row.append(label, input, output);
   parent.append(row);
   return {
     row,
     name,
-    set(to) { input.value = to; show(); },
+    set(to) { input.value = to; show(to); },
   };
 }
 

@@ -2,7 +2,6 @@
 import * as THREE from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
-import { readFile } from './files.js';
 import { memory } from './blend.js';
 
 export class HeadScene {
@@ -26,7 +25,7 @@ export class HeadScene {
   }
 
   /** Loads mesh.glb. Returns the names of its morph targets. */
-  async loadMesh(file) {
+  async loadMesh(readFile, file) {
     const bytes = await readFile(file);
     const gltf = await new GLTFLoader().parseAsync(bytes.buffer, '');
     gltf.scene.traverse((node) => { if (node.isMesh) this.head = node; });

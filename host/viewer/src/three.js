@@ -5,16 +5,16 @@
 //   face.setWeights({ smile: 0.7 });               // whenever they change; blends on the GPU
 import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
 import { PackageTextures } from './blend.js';
-import { readFile, setBase } from './files.js';
+import { fileReader } from './files.js';
 import { cellGains, fromPreset } from './gains.js';
 import { shadedMaterial } from './materials.js';
 import { readDescription, readMasks } from './package.js';
 
 export async function loadFace(renderer, base = './') {
-  setBase(base);
   if (!renderer.extensions.has('EXT_color_buffer_float')) throw new Error('facezip needs EXT_color_buffer_float');
-  const description = await readDescription();
-  const textures = await PackageTextures.load(description, renderer, () => {});
+  const readFile = fileReader(base);  // the face's own: others may load meanwhile, and gains read masks later
+  const description = await readDescription(readFile);
+  const textures = await PackageTextures.load(readFile, description, renderer, () => {});
   const gltf = await new GLTFLoader().parseAsync((await readFile(description.mesh.file)).buffer, '');
   let object;
   gltf.scene.traverse((node) => { if (node.isMesh) object = node; });
@@ -38,7 +38,7 @@ export async function loadFace(renderer, base = './') {
     /** The text of a preset of gains that `facezip view` saved. */
     async setGains(text) {
       const preset = fromPreset(description, text);
-      const masks = await readMasks(description);
+      const masks = await readMasks(readFile, description);
       gains = preset.expressions;
       textures.sets.forEach((set, s) => set.setGains(cellGains(description, masks, preset.regions, description.weights[s])));
       blend();

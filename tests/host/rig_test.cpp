@@ -154,6 +154,8 @@ TEST_F(RigTest, IsEvaluatedByItsOwnNamesAndThroughTheShapes) {
   const auto& rmse = evaluation.maps[0].rmse;
   EXPECT_EQ(evaluation.expressions.size(), 4u);
   EXPECT_LT(rmse.at("package").pooled, 1.0);
+  // Shapes take next to nothing from what was captured.
+  EXPECT_NEAR(rmse.at("package").pooled, report_->compress.rmse.front().second, 0.05);
   EXPECT_LT(rmse.at("rig").pooled, 0.35 * evaluation.maps[0].rms_difference);
   EXPECT_GE(rmse.at("rig").pooled, rmse.at("package").pooled);
   options.shapes = true;  // no expression of the capture is a shape
@@ -235,6 +237,34 @@ TEST_F(RigTest, TheSameInputGivesTheSameBytes) {
   for (const char* name : {"package.json", "weights.png", "rig.json", "rig.bin", "shapes/bumpB.obj"}) {
     EXPECT_EQ(test::contentsOf(folder() / "again" / name), test::contentsOf(package() / name)) << name;
   }
+}
+
+/// Two expressions of other textures whose meshes are nearly alike: the pseudo-inverse blows up.
+TEST_F(RigTest, ShapesThatNothingDeterminesDoNotHarmWhatWasCaptured) {
+  struct Notes : Progress {
+    void note(std::string_view message) override { text += message; }
+    std::string text;
+  } progress;
+  fs::copy(folder() / "capture", folder() / "alike", fs::copy_options::recursive);
+  geometry::TriangleMesh mesh = geometry::readObj(folder() / "capture/neutral.obj");
+  const Eigen::MatrixX3d neutral = mesh.positions;
+  for (const auto& [name, weight] : {std::pair("r0", 0.6), std::pair("r1", 0.6002)}) {
+    mesh.positions = neutral + weight * test::rigShape(test::kRigSide, 0, 0.03);
+    geometry::writeObj(folder() / "alike/expressions" / (std::string(name) + ".obj"), mesh);
+  }
+  RigOptions options = quickOptions();
+  options.fit.iterations = 0;
+  options.fit.transfer = geometry::ShapeTransfer::kDisplacements;
+  options.texture_solve = TextureSolve::kPseudoInverse;
+  const Capture capture = openCapture(folder() / "alike");
+  const RigReport report =
+      rigCapture(capture, folder() / "template", folder() / "alike.facezip", options, test::testDevice(), progress);
+  EXPECT_THAT(progress.text, testing::HasSubstr("are clamped"));
+  EvaluateOptions evaluate;
+  evaluate.pca4 = evaluate.pca8 = evaluate.no_permutation = evaluate.paper = evaluate.limit = false;
+  const Evaluation evaluation =
+      evaluatePackage(capture, Package::open(folder() / "alike.facezip"), evaluate, test::testDevice(), progress);
+  EXPECT_NEAR(evaluation.maps[0].rmse.at("package").pooled, report.compress.rmse.front().second, 0.05);
 }
 
 // ---- the solve by itself

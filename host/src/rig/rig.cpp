@@ -25,6 +25,8 @@ namespace fs = std::filesystem;
 
 /// A shape that no expression uses by more than this is the template's own.
 constexpr double kSeen = 0.05;
+/// Share of the shapes' weights that is worth a note when it is clamped.
+constexpr double kMuchClamped = 0.01;
 
 RigResidual inMillimetres(const geometry::Distances& distances, double scale) {
   return {scale * distances.mean, scale * distances.percentile_99, scale * distances.largest};
@@ -183,11 +185,19 @@ class Rigging {
     const ChosenSolve chosen = chooseSolve(options_, rig_.weights, features, maps, progress_);
     report_.texture_rank = rankOf(rig_.weights);
     if (report_.texture_rank < static_cast<int>(report_.expressions.size())) {
-      progress_.note(fmt::format("the expressions' weights have rank {}, not {}: some repeat or combine others",
-                                 report_.texture_rank, report_.expressions.size()));
+      progress_.note(
+          fmt::format("the expressions' weights have rank {}, not {}: some repeat or combine others; of twins, "
+                      "give one",
+                      report_.texture_rank, report_.expressions.size()));
     }
-    addShapeWeights(staged_.path(), report_.package_expressions, report_.shapes, chosen.solver, features, maps,
-                    progress_);
+    const double clamped = addShapeWeights(staged_.path(), report_.package_expressions, report_.shapes, chosen.solver,
+                                           features, maps, progress_);
+    if (clamped > kMuchClamped) {
+      progress_.note(
+          fmt::format("{:.1f} % of the shapes' weights lie beyond those of the captured expressions and are "
+                      "clamped: the expressions hardly tell some shapes apart",
+                      100.0 * clamped));
+    }
     report_.texture_solve = options_.texture_solve == TextureSolve::kLocal    ? "local"
                             : options_.texture_solve == TextureSolve::kDamped ? "damped"
                                                                               : "pseudo-inverse";

@@ -30,10 +30,11 @@ ChosenSolve chooseSolve(const RigOptions& options, const Eigen::MatrixXd& weight
                         compress::MapSet& maps, Progress& progress);
 
 /// Replaces the weights and the names of the package in `directory`: `captured` names, then those of the shapes, whose
-/// weight maps follow from the captured ones'. Atlas and package.json are written anew; textures stay.
-/// Throws InputError, OutputError, Cancelled.
-void addShapeWeights(const std::filesystem::path& directory, const std::vector<std::string>& captured,
-                     const std::vector<std::string>& shapes, const TextureSolver& solver, const SkinFeatures& features,
-                     const compress::MapSet& maps, Progress& progress);
+/// weight maps follow from the captured ones' (shape_codes.hpp). Atlas and package.json are written anew; textures
+/// stay. Returns the share of the shapes' weights that was clamped, of the set that has most. Throws InputError,
+/// OutputError, Cancelled.
+double addShapeWeights(const std::filesystem::path& directory, const std::vector<std::string>& captured,
+                       const std::vector<std::string>& shapes, const TextureSolver& solver,
+                       const SkinFeatures& features, const compress::MapSet& maps, Progress& progress);
 
 }  // namespace facezip::rig

@@ -183,6 +183,10 @@ TEST_F(BadInput, EmptyRegion) {
   image::writeImage(capture() / "coverage.png",
                     test::makeImage({16, 16, 1, image::SampleType::kUint8}, [](int, int, int) { return 0.0; }));
   expectFailure(cli::kExitInput, {"coverage.png", "empty region"});
+  // Black and opaque.
+  image::writeImage(capture() / "coverage.png",
+                    test::makeImage({16, 16, 2, image::SampleType::kUint8}, [](int, int, int c) { return 255.0 * c; }));
+  expectFailure(cli::kExitInput, {"coverage.png", "empty region"});
 }
 
 TEST_F(BadInput, RegionWithAWrongIndex) {

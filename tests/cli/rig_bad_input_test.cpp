@@ -150,8 +150,8 @@ TEST_F(RigBadInput, GuessesWithUnknownNamesOrOutOfRange) {
   const std::string weights = "--weights " + quoted(folder_ / "guess.csv");
   writeGuess("expression,bumpX\nr0,1\nr1,0\nr2,0\nr3,0\n");
   expectFailure(cli::kExitInput, {"guess.csv", "bumpX", "nearest"}, weights);
-  writeGuess("expression,bumpA\nr0,1.2\nr1,0\nr2,0\nr3,0\n");
-  expectFailure(cli::kExitInput, {"guess.csv", "line 2", "from 0 to 1", "1.2"}, weights);
+  writeGuess("expression,bumpA\nr0,120\nr1,0\nr2,0\nr3,0\n");
+  expectFailure(cli::kExitInput, {"guess.csv", "line 2", "from 0 to 1", "120"}, weights);
   writeGuess("expression,bumpA\nr0,1\n");
   expectFailure(cli::kExitInput, {"guess.csv", "r1"}, weights);
 }

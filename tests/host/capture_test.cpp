@@ -236,5 +236,25 @@ TEST(Capture, RefusesFilesWhoseNamesAPackageCannotHold) {
   EXPECT_EQ(openCapture(folder / "c\xff").name, "Bob");
 }
 
+TEST(Capture, NamesThatNoExpressionHasAreRefused) {
+  const test::TemporaryDirectory folder;
+  test::writeSmallCapture(folder.path(), {.expressions = 2});
+  io::writeTextFile(
+      folder / "capture.json",
+      R"({"expressions": ["e00", "e01"], "maps": {"albedo": {"expressions": {"e0O": "albedo/e01.png"}}}})");
+  try {
+    openCapture(folder.path());
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("maps.albedo.expressions"), testing::HasSubstr("e0O")));
+  }
+}
+
+TEST(Capture, AMapIsTakenOnce) {
+  const test::TemporaryDirectory folder;
+  test::writeSmallCapture(folder.path(), {.expressions = 2});
+  EXPECT_THROW(openCapture(folder.path(), {"albedo", "albedo"}), InputError);
+}
+
 }  // namespace
 }  // namespace facezip

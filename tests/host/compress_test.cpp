@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "compress/face.hpp"
 #include "facezip/evaluate.hpp"
 #include "facezip/reconstruct.hpp"
 #include "file_contents.hpp"
@@ -234,6 +235,20 @@ TEST(Evaluate, MeetsThePublishedFiguresOfTheRealCapture) {
   EXPECT_NEAR(map.rmse.at("pca8").pooled, 1.520, 0.005 * 1.520);
   EXPECT_LT(map.rmse.at("package").pooled, map.rmse.at("pca4").pooled);
   EXPECT_GT(map.rmse.at("no_permutation").pooled, map.rmse.at("pca4").pooled);
+}
+
+TEST(ReadFace, RegionsMayBePaintedInAnyColour) {
+  const test::TemporaryDirectory folder;
+  test::writeSmallCapture(folder / "capture", {.expressions = 2});
+  const Capture capture = openCapture(folder / "capture");
+  image::writeImage(folder / "green.png",
+                    test::makeImage({16, 16, 3, image::SampleType::kUint8},
+                                    [](int x, int, int c) { return c == 1 && x < 8 ? 255.0 : 0.0; }));
+  image::writeImage(folder / "white.png", test::makeImage({16, 16, 1, image::SampleType::kUint8},
+                                                          [](int x, int, int) { return x < 8 ? 255.0 : 0.0; }));
+  const std::vector<int> region = compress::readFace(capture, folder / "green.png").region;
+  EXPECT_FALSE(region.empty());
+  EXPECT_EQ(region, compress::readFace(capture, folder / "white.png").region);
 }
 
 }  // namespace

@@ -174,6 +174,11 @@ TEST_F(RigTest, WeightsOfTrackedMeshesAreFound) {
     for (std::size_t m = 0; m < 3; ++m) EXPECT_NEAR(clip.weights[n][m], report_->weights[n][m], 0.05) << n << ' ' << m;
     EXPECT_LE(clip.residuals[n].mean, report_->residuals[n].mean + 0.05);
   }
+  // In millimetres.
+  geometry::TriangleMesh mesh = geometry::readObj(meshes[0]);
+  mesh.positions *= 1000.0;
+  geometry::writeObj(folder() / "millimetres.obj", mesh);
+  EXPECT_THROW(solveWeights(package(), {folder() / "millimetres.obj"}, {}, progress), InputError);
   writeClip(folder() / "clip.csv", clip);
   const AnimationClip read = readAnimation(folder() / "clip.csv", Package::open(package()));
   EXPECT_EQ(read.frames(), 4);
@@ -369,9 +374,14 @@ TEST_F(GuessTest, TablesAndObjectsAreRead) {
   EXPECT_EQ(read("g.json", R"({"happy": {"up": 0.25, "down": 1}, "sad": {"down": 0.5}})"), expected);
 }
 
+TEST_F(GuessTest, AShapeDrivenBeyondOneIsFullyOn) {
+  io::writeTextFile(folder_ / "g.csv", "expression,up,down\nhappy,1.18,0.5\nsad,0,0\n");
+  EXPECT_EQ(rig::readGuess(folder_ / "g.csv", {"happy", "sad"}, {"up", "down"})(0, 0), 1.0);
+}
+
 TEST_F(GuessTest, BadOnesAreRefused) {
   refuses("g.csv", "expression,up,sideways\nhappy,0,0\nsad,0,0\n", "sideways");
-  refuses("g.csv", "expression,up,down\nhappy,0,1.5\nsad,0,0\n", "from 0 to 1");
+  refuses("g.csv", "expression,up,down\nhappy,0,50\nsad,0,0\n", "from 0 to 1");
   refuses("g.csv", "expression,up,down\nhappy,0,nan\nsad,0,0\n", "from 0 to 1");
   refuses("g.csv", "expression,up,down\nhappy,0\nsad,0,0\n", "3 columns");
   refuses("g.csv", "expression,up,down\nhappy,0,0\n", "sad");

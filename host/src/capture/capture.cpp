@@ -172,6 +172,7 @@ std::vector<std::string> chooseMaps(const fs::path& directory, const std::map<st
     throw InputError({directory.string(), "maps", "folders of textures such as albedo/neutral.png", "none", ""});
   }
   for (const std::string& name : wanted) {
+    if (std::ranges::count(wanted, name) > 1) throw InputError({"--maps", "", "each map once", name + " twice", ""});
     if (found.contains(name)) continue;
     throw InputError({directory.string(), fmt::format("map \"{}\"", name),
                       fmt::format("one of {}", fmt::join(names, ", ")), "no such map", ""});
@@ -243,6 +244,18 @@ std::string nameOf(const fs::path& directory) {
   return name.empty() ? "capture" : name;
 }
 
+/// A misspelt name would leave the texture that its folder has in place.
+void requireKnownExpressions(const std::string& map, const CaptureJson& description,
+                             const std::vector<std::string>& expressions, const fs::path& directory) {
+  const auto described = description.maps.find(map);
+  if (described == description.maps.end()) return;
+  for (const auto& [name, file] : described->second.expressions) {
+    if (name == "neutral" || std::ranges::find(expressions, name) != expressions.end()) continue;
+    throw InputError({(directory / kCaptureFile).string(), fmt::format("maps.{}.expressions", map),
+                      "expressions of the capture", package::quoted(name), ""});
+  }
+}
+
 }  // namespace
 
 Capture openCapture(const fs::path& directory, const std::vector<std::string>& map_names, Progress* progress) {
@@ -270,6 +283,7 @@ Capture openCapture(const fs::path& directory, const std::vector<std::string>& m
     requireTextures(name, used[name]);
   }
   capture.expressions = expressionNames(directory, description, used);
+  for (const std::string& name : chosen) requireKnownExpressions(name, description, capture.expressions, directory);
   for (const std::string& name : chosen) capture.maps.push_back(makeMap(name, used.at(name), capture.expressions));
   const std::map<std::string, fs::path> meshes = meshesByName(directory / "expressions");
   for (const std::string& name : capture.expressions) {

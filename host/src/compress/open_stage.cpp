@@ -50,6 +50,13 @@ void readGeometry(CompressionState& state) {
   state.clock.book("meshes");
   state.masks = makeFaceMasks(state.capture, state.face, state.options, state.progress);
   state.report.masks = state.masks.masks.mask_count;
+  constexpr int kManyMasks = 500;  // a face has some 60
+  if (state.report.masks > kManyMasks) {
+    state.progress.note(
+        fmt::format("{} masks: the permutation search grows with their square; a larger --mask-radius "
+                    "gives fewer",
+                    state.report.masks));
+  }
   state.report.mask_radius = state.masks.samples.radius;
   state.report.unit = state.masks.unit ? geometry::unitSymbol(*state.masks.unit) : "";
   state.report.unit_guessed = state.masks.unit_guessed;
@@ -75,12 +82,12 @@ void planBands(CompressionState& state) {
   } else {
     assignWeightScales(state.maps, state.options.weight_scale);
   }
-  state.report.band_rows = state.plannedBandRows();
-  // Too little memory is to be said before the work, not in its middle.
+  // Too little memory is to be said before the work, not in its middle, and the refinement's windows need most.
   const auto method = state.options.method;
   if (method == CompressOptions::Method::kRefined || method == CompressOptions::Method::kClosedLoop) {
     for (const WeightGroup& group : state.groups) state.plannedWindowRows(group);
   }
+  state.report.band_rows = state.plannedBandRows();
   state.clock.book("weight grid");
 }
 

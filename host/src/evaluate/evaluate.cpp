@@ -281,8 +281,12 @@ class Evaluator {
     for (const PackageMap& map : package_.maps()) textures += map.frameBytes();
     evaluation_.bytes["neutral"] = textures;
     evaluation_.bytes["raw"] = textures * (static_cast<std::uint64_t>(subject_.expressions()) + 1);
-    if (options_.pca4) evaluation_.bytes["pca4"] = textures * 5;
-    if (options_.pca8) evaluation_.bytes["pca8"] = textures * 9;
+    // There are no more components than expressions.
+    const auto pca = [&](int components) {
+      return textures * (static_cast<std::uint64_t>(std::min(components, subject_.expressions())) + 1);
+    };
+    if (options_.pca4) evaluation_.bytes["pca4"] = pca(4);
+    if (options_.pca8) evaluation_.bytes["pca8"] = pca(8);
     for (const Candidate& candidate : candidates_) {
       evaluation_.bytes[candidate.method] = candidate.decoder->package().bytesInMemory();
     }
@@ -290,7 +294,7 @@ class Evaluator {
     evaluation_.bytes["package_disk"] = package_.bytesOnDisk();
     if (!options_.ablation) return;
     for (const int components : {1, 2, 3, 4, 8}) {
-      evaluation_.ablation_bytes["pca"][components] = textures * (static_cast<std::uint64_t>(components) + 1);
+      evaluation_.ablation_bytes["pca"][components] = pca(components);
     }
   }
 

@@ -9,6 +9,7 @@
 #include "compress/bands/map_bands.hpp"
 #include "compress/method_record.hpp"
 #include "facezip/rig.hpp"
+#include "package/package_json.hpp"
 
 namespace facezip::evaluate {
 namespace {
@@ -75,10 +76,12 @@ Capture withExpressions(const Capture& capture, const std::vector<std::size_t>& 
 /// The capture's maps that the package has, in the package's order; refuses a package of another capture.
 Capture matchingCapture(const Capture& capture, const Package& package, bool rigged) {
   if (!rigged && capture.expressions != package.expressions()) {
+    const auto [captured, packed] = std::ranges::mismatch(capture.expressions, package.expressions());
+    const auto named = [](const auto& name, const auto& end) { return name == end ? "none" : package::quoted(*name); };
     throw InputError(
-        {packageFile(package), "expressions",
-         fmt::format("the {} expressions of {}, in its order", capture.expressions.size(), capture.directory.string()),
-         fmt::format("{} expressions", package.expressions().size()), "evaluate against the capture it was made of"});
+        {packageFile(package), fmt::format("expressions[{}]", packed - package.expressions().begin()),
+         fmt::format("{}, as {} has it", named(captured, capture.expressions.end()), capture.directory.string()),
+         named(packed, package.expressions().end()), "evaluate against the capture it was made of"});
   }
   Capture matching = capture;
   matching.maps.clear();

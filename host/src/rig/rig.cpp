@@ -162,8 +162,9 @@ class Rigging {
                      progress_);
     }
     if (4 * report_.expressions.size() < report_.shapes.size()) {
-      progress_.note(fmt::format("{} expressions for {} shapes: most of the rig is the template's",
-                                 report_.expressions.size(), report_.shapes.size()));
+      progress_.note(fmt::format("{} shapes from {} expression{}: most of the rig is the template's",
+                                 report_.shapes.size(), report_.expressions.size(),
+                                 report_.expressions.size() == 1 ? "" : "s"));
     }
     if (!report_.unseen.empty()) {
       progress_.note(fmt::format("no expression shows {}: as the template has them", fmt::join(report_.unseen, ", ")));

@@ -122,10 +122,24 @@ class ClipSolver {
   geometry::HeadStabiliser stabiliser_{solver_};
 };
 
+/// Root mean square distance from the centre: the same wherever the head turns or goes.
+double sizeOf(const Eigen::MatrixX3d& positions) {
+  return std::sqrt((positions.rowwise() - positions.colwise().mean()).rowwise().squaredNorm().mean());
+}
+
+/// Meshes in another unit would be posed by weights of 0 and 1 alone.
+void requireSameUnit(const Eigen::MatrixX3d& frame, const Eigen::MatrixX3d& neutral, const fs::path& file) {
+  const double ratio = sizeOf(frame) / sizeOf(neutral);
+  if (ratio > 1.0 / 3.0 && ratio < 3.0) return;
+  throw InputError({file.string(), "", "a mesh of the size of the rig's neutral",
+                    fmt::format("one {:.3g} times as large", ratio), "export it in the unit of the capture"});
+}
+
 Eigen::MatrixX3d readFrame(const fs::path& file, const LoadedRig& loaded) {
   geometry::TriangleMesh mesh = geometry::readObj(file);
   mesh.uv_triangles.resize(0, 3);  // trackers keep the order of vertices and faces, not always the UVs
   geometry::requireSameTopology(loaded.skin, loaded.neutral_file, mesh, file.string());
+  requireSameUnit(mesh.positions, loaded.skin.positions, file);
   return mesh.positions;
 }
 

@@ -43,8 +43,9 @@ class Guess {
   }
 
   void set(Eigen::Index row, Eigen::Index shape, double weight, const std::string& item, const std::string& got) {
-    if (!(weight >= 0.0 && weight <= 1.0)) throw InputError({file_, item, "a weight from 0 to 1", got, ""});
-    weights_(row, shape) = weight;
+    // Rigs drive some shapes a little beyond 1; percents are a mistake.
+    if (!(weight >= 0.0 && weight <= 2.0)) throw InputError({file_, item, "a weight from 0 to 1", got, ""});
+    weights_(row, shape) = std::min(weight, 1.0);
   }
 
   Eigen::MatrixXd finish() const {

@@ -1,6 +1,7 @@
 #include "cancel_on_signal.hpp"
 
 #include <pthread.h>
+#include <time.h>
 
 #include <chrono>
 #include <optional>
@@ -38,6 +39,10 @@ CancelOnSignal::~CancelOnSignal() {
   over_ = true;
   ::pthread_kill(watcher_.native_handle(), SIGTERM);
   watcher_.join();
+  // What came twice has been heard: nothing is left to end.
+  const timespec now{};
+  while (::sigtimedwait(&endings_, nullptr, &now) > 0) {
+  }
   ::pthread_sigmask(SIG_SETMASK, &blocked_before_, nullptr);
 }
 

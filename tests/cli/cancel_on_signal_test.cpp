@@ -47,6 +47,14 @@ TEST(CancelOnSignal, HandlersOfDriversAreNotCalled) {
   std::signal(SIGINT, before);
 }
 
+TEST(CancelOnSignal, ASignalThatComesTwiceIsHeardOnce) {
+  for (int round = 0; round < 200; ++round) {
+    Progress progress;
+    const CancelOnSignal cancel(progress);
+    for (int i = 0; i < 3; ++i) ::kill(::getpid(), SIGINT);
+  }
+}
+
 TEST(CancelOnSignal, ASecondWishEndsTheProcess) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(

@@ -74,7 +74,7 @@ FACEZIP_RUNTIME_API const char* facezip_last_error(void);
 /** Loads every texel of a package onto a device; weights are all zero. Takes seconds for large packages, and a second
  *  more the first time on a device, when kernels are compiled.
  *  directory  of the package, UTF-8
- *  device     selector as `facezip --device` takes it: "auto", "gpu", "cpu", "PLATFORM:DEVICE", part of a name; null: auto.
+ *  device     as `facezip --device` takes it: "auto" (as null is), "gpu", "cpu", "PLATFORM:DEVICE", part of a name
  *  package    set to the package, to be given to facezip_free(); to null on failure
  */
 FACEZIP_RUNTIME_API facezip_status facezip_load(const char* directory, const char* device, facezip_package** package);

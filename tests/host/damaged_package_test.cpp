@@ -1,6 +1,7 @@
 // Packages that are not as facezip writes them: refused by file and field.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <functional>
@@ -55,6 +56,12 @@ TEST(Package, UnreadableFolderIsNotCalledMissing) {
   EXPECT_THAT(messageOfOpening(folder / "package"), HasSubstr("Permission denied"));
   EXPECT_THAT(messageOfOpening(folder / "package/package.json"), HasSubstr("Permission denied"));
   fs::permissions(folder / "package", fs::perms::owner_all);
+}
+
+TEST(Package, APipeIsNotWaitedFor) {
+  const test::TemporaryDirectory folder;
+  ASSERT_EQ(::mkfifo((folder / "package.json").c_str(), 0600), 0);
+  EXPECT_THAT(messageOfOpening(folder.path()), HasSubstr("a pipe"));
 }
 
 TEST(Package, DamagedImagesAreNotExportedAgain) {

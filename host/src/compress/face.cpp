@@ -15,28 +15,15 @@ namespace facezip::compress {
 namespace fs = std::filesystem;
 namespace {
 
-/// Full scale is 1.
-double sampleAt(const image::Image& picture, std::size_t sample) {
-  switch (picture.shape.type) {
-    case image::SampleType::kUint8:
-      return std::to_integer<int>(picture.samples[sample]) / 255.0;
-    case image::SampleType::kUint16:
-      return reinterpret_cast<const std::uint16_t*>(picture.samples.data())[sample] / 65535.0;
-    case image::SampleType::kFloat32:
-      break;
-  }
-  return reinterpret_cast<const float*>(picture.samples.data())[sample];
-}
-
 /// The brightest colour channel: people paint in any colour. Alpha is none.
-double brightness(const image::Image& picture, int x, int y) {
+float brightness(const image::Image& picture, int x, int y) {
   const auto channels = static_cast<std::size_t>(picture.shape.channels);
   const std::size_t texel =
       (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.shape.width) + static_cast<std::size_t>(x)) *
       channels;
-  double brightest = sampleAt(picture, texel);
+  float brightest = image::sampleAt(picture, texel);
   for (std::size_t c = 1; c < channels - (channels % 2 == 0 ? 1 : 0); ++c) {
-    brightest = std::max(brightest, sampleAt(picture, texel + c));
+    brightest = std::max(brightest, image::sampleAt(picture, texel + c));
   }
   return brightest;
 }
@@ -48,7 +35,7 @@ std::vector<int> paintedRegion(const geometry::TriangleMesh& mesh, const fs::pat
   std::vector<int> region = geometry::regionFromPredicate(mesh, [&](double u, double v) {
     const int x = std::clamp(static_cast<int>(std::floor(u * width)), 0, width - 1);
     const int y = std::clamp(static_cast<int>(std::floor((1.0 - v) * height)), 0, height - 1);
-    return brightness(picture, x, y) > 0.5;
+    return brightness(picture, x, y) > 0.5f;
   });
   if (region.empty()) {
     throw InputError({file.string(), "", "a painted part (brighter than half) that covers triangles of the mesh",

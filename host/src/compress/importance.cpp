@@ -1,35 +1,11 @@
 #include "compress/importance.hpp"
 
 #include <algorithm>
-#include <cstring>
 
 #include "facezip/error.hpp"
 #include "image/image_file.hpp"
 
 namespace facezip::compress {
-namespace {
-
-/// Sample `index` of an image, 1 at full scale.
-float sampleAt(const image::Image& image, std::size_t index) {
-  const std::byte* at = image.samples.data() + index * image::sampleBytes(image.shape.type);
-  const auto read = [at](auto value) {
-    std::memcpy(&value, at, sizeof(value));
-    return static_cast<float>(value);
-  };
-  const float unit = image::unit255(image.shape.type) / 255.0f;
-  switch (image.shape.type) {
-    case SampleType::kUint8:
-      return unit * read(std::uint8_t{});
-    case SampleType::kUint16:
-      return unit * read(std::uint16_t{});
-    case SampleType::kFloat32:
-      return unit * read(0.0f);
-  }
-  return 0.0f;
-}
-
-}  // namespace
-
 Importance::Importance(const std::filesystem::path& file) {
   const image::Image image = image::readImage(file);
   width_ = image.shape.width;
@@ -39,7 +15,7 @@ Importance::Importance(const std::filesystem::path& file) {
   bool any = false;
   for (std::size_t texel = 0; texel < values_.size(); ++texel) {
     float sum = 0.0f;
-    for (std::size_t c = 0; c < channels; ++c) sum += sampleAt(image, texel * channels + c);
+    for (std::size_t c = 0; c < channels; ++c) sum += image::sampleAt(image, texel * channels + c);
     const float mean = sum / static_cast<float>(channels);
     any = any || mean > 0.0f;
     values_[texel] = kLeast + (1.0f - kLeast) * std::clamp(mean, 0.0f, 1.0f);

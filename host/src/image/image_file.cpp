@@ -104,6 +104,24 @@ Image readImage(const fs::path& path) {
   return image;
 }
 
+float sampleAt(const Image& image, std::size_t index) {
+  const std::byte* at = image.samples.data() + index * sampleBytes(image.shape.type);
+  const auto read = [at](auto value) {
+    std::memcpy(&value, at, sizeof(value));
+    return static_cast<float>(value);
+  };
+  const float unit = unit255(image.shape.type) / 255.0f;
+  switch (image.shape.type) {
+    case SampleType::kUint8:
+      return unit * read(std::uint8_t{});
+    case SampleType::kUint16:
+      return unit * read(std::uint16_t{});
+    case SampleType::kFloat32:
+      return unit * read(0.0f);
+  }
+  return 0.0f;
+}
+
 void writeImage(const fs::path& path, const Image& image, const std::string& colour_space) {
   ImageWriter writer(path, image.shape, colour_space);
   writer.writeRows(image.samples, image.shape.height);

@@ -93,5 +93,7 @@ struct Image {
 };
 Image readImage(const std::filesystem::path& path);
 void writeImage(const std::filesystem::path& path, const Image& image, const std::string& colour_space = "");
+/// One sample, 1 at full scale. index  into the samples, not the bytes
+float sampleAt(const Image& image, std::size_t index);
 
 }  // namespace facezip::image

@@ -59,18 +59,6 @@ image::Image errorPicture(const ErrorPictures& pictures, const std::vector<float
   return fromValues(pictures.width, pictures.height, 2, values);
 }
 
-float sampleOf(const image::Image& picture, std::size_t index) {
-  switch (picture.shape.type) {
-    case SampleType::kUint8:
-      return static_cast<float>(std::to_integer<int>(picture.samples[index])) / 255.0f;
-    case SampleType::kUint16:
-      return static_cast<float>(reinterpret_cast<const std::uint16_t*>(picture.samples.data())[index]) / 65535.0f;
-    case SampleType::kFloat32:
-      break;
-  }
-  return reinterpret_cast<const float*>(picture.samples.data())[index];
-}
-
 /// The image at no more than kLargestThumbnail a side: means of step x step texels, of fewer where a side is shorter
 /// than that. Opaque: four channels become three.
 image::Image thumbnail(const fs::path& file) {
@@ -89,10 +77,10 @@ image::Image thumbnail(const fs::path& file) {
         float sum = 0.0f;
         for (int row = y * step; row < y * step + rows; ++row) {
           for (int column = x * step; column < x * step + columns; ++column) {
-            sum += sampleOf(picture, (static_cast<std::size_t>(row) * static_cast<std::size_t>(shape.width) +
-                                      static_cast<std::size_t>(column)) *
-                                             static_cast<std::size_t>(shape.channels) +
-                                         static_cast<std::size_t>(c));
+            sum += image::sampleAt(picture, (static_cast<std::size_t>(row) * static_cast<std::size_t>(shape.width) +
+                                             static_cast<std::size_t>(column)) *
+                                                    static_cast<std::size_t>(shape.channels) +
+                                                static_cast<std::size_t>(c));
           }
         }
         values.push_back(sum / static_cast<float>(rows * columns));
@@ -112,7 +100,7 @@ image::Image maskPicture(const Package& package) {
     for (std::size_t i = 0; i < values.size() / 3; ++i) {
       const int x = static_cast<int>(i) % masks.tile_width + k % masks.columns * masks.tile_width;
       const int y = static_cast<int>(i) / masks.tile_width + k / masks.columns * masks.tile_height;
-      const float mask = sampleOf(tiles, static_cast<std::size_t>(y * tiles.shape.width + x));
+      const float mask = image::sampleAt(tiles, static_cast<std::size_t>(y * tiles.shape.width + x));
       for (std::size_t c = 0; c < 3; ++c) {
         values[3 * i + c] += mask * (0.5f + 0.45f * std::cos(6.28319f * (turn + static_cast<float>(c) / 3.0f)));
       }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "compress/code_bits.hpp"
+#include "compress/codes/map_codes.hpp"
 #include "compress/refine/grid_weights.hpp"
 #include "facezip/compress.hpp"
 #include "facezip/evaluate.hpp"

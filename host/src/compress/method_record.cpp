@@ -54,10 +54,10 @@ const char* methodName(Method method) {
   return "";
 }
 
-std::string methodJson(const CompressOptions& options, const CompressReport& report, const std::string& region) {
+std::string methodJson(const CompressOptions& options, const PackageForm& form, const MethodResult& result) {
   json record = {{"name", methodName(options.method)},
-                 {"differences", options.differences},
-                 {"weight_scale", options.weight_scale},
+                 {"differences", form.differences},
+                 {"weight_scale", form.weight_scale},
                  {"mask_radius", lengthText(options.mask_radius)},
                  {"mask_cutoff", options.mask_cutoff},
                  {"permutation_solver", solverName(options.permutation_solver)},
@@ -70,12 +70,12 @@ std::string methodJson(const CompressOptions& options, const CompressReport& rep
                  {"unit", options.unit.value_or("")}};
   if (options.masks) record["masks"] = *options.masks;
   if (options.gutter) record["gutter"] = *options.gutter;
-  record["result"] = {{"masks", report.masks},
-                      {"mask_radius", report.mask_radius},
-                      {"unit", report.unit},
-                      {"region", region},
-                      {"covered_texels", report.covered_texels},
-                      {"permutation_cost", report.permutation_cost}};
+  record["result"] = {{"masks", result.masks},
+                      {"mask_radius", result.mask_radius},
+                      {"unit", result.unit},
+                      {"region", result.region},
+                      {"covered_texels", result.covered_texels},
+                      {"permutation_cost", result.permutation_cost}};
   return record.dump();
 }
 

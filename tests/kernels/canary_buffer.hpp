@@ -19,7 +19,7 @@ class CanaryBuffer {
         bytes_(bytes),
         buffer_(context.allocate(bytes + kGuard, CL_MEM_READ_WRITE, "output and canary")) {
     const std::vector<unsigned char> fill(bytes + kGuard, kFill);
-    context.write(buffer_, fill.data(), fill.size(), "output and canary");
+    context.write(buffer_, fill, "output and canary");
   }
 
   const cl::Buffer& buffer() const { return buffer_; }
@@ -28,10 +28,10 @@ class CanaryBuffer {
   template <typename T>
   std::vector<T> read() const {
     std::vector<unsigned char> guard(kGuard);
-    context_.read(buffer_, guard.data(), kGuard, "canary", bytes_);
+    context_.read(buffer_, guard, "canary", bytes_);
     EXPECT_EQ(guard, std::vector<unsigned char>(kGuard, kFill)) << "wrote past the end of the output";
     std::vector<T> values(bytes_ / sizeof(T));
-    context_.read(buffer_, values.data(), bytes_, "output");
+    context_.read(buffer_, values, "output");
     return values;
   }
 

@@ -74,7 +74,7 @@ struct Computed {
     computeDifferences(context, tiles, shape, samples, differences);
     const cl::Buffer& buffer = textures.compute(tiles, differences, shape);
     actual.resize(masks.tiles.size() * planes() * kTileTexels);
-    context.read(buffer, actual.data(), actual.size() * sizeof(float), "textures");
+    context.read(buffer, actual, "textures");
     computeReference();
   }
 

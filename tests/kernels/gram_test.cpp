@@ -247,17 +247,11 @@ TEST(GramReduce, CompensatesWhatRoundingDrops) {
   std::fill_n(partial.begin(), kLanes, 1e6f);  // half a unit in its last place is 0.03125
   std::vector<cl_int> rows(kRows);
   std::iota(rows.begin(), rows.end(), 0);
-  // A kernel does not keep its arguments alive: they need names.
-  const cl::Buffer partial_buffer = context.upload(partial, "partial sums");
-  const cl::Buffer begin_buffer = context.upload(std::vector<cl_int>{0, kRows}, "rows of the slots");
-  const cl::Buffer rows_buffer = context.upload(rows, "rows");
   const test::CanaryBuffer sums(context, kLanes * sizeof(cl_float2));
-  cl::Kernel kernel = context.kernel("gram_reduce.cl", "gram_reduce");
-  kernel.setArg(0, partial_buffer);
-  kernel.setArg(1, begin_buffer);
-  kernel.setArg(2, rows_buffer);
-  kernel.setArg(3, sums.buffer());
-  context.run(kernel, cl::NDRange(kLanes, 1), cl::NDRange(kLanes, 1));
+  context.launch(context.kernel("gram_reduce.cl", "gram_reduce"), device::WorkItems(kLanes, 1).inGroupsOf(kLanes, 1),
+                 context.upload(partial, "partial sums"),
+                 context.upload(std::vector<cl_int>{0, kRows}, "rows of the slots"), context.upload(rows, "rows"),
+                 sums);
   context.finish();
   for (const cl_float2 sum : sums.read<cl_float2>()) {
     EXPECT_EQ(static_cast<double>(sum.s[0]) + static_cast<double>(sum.s[1]), 1e6 + 999 * 0.03125);

@@ -146,7 +146,7 @@ class GridProblem {
 
   std::vector<float> readTextures() const {
     std::vector<float> values(textureIndex(tileCount(), 0, 0, 0));
-    context().read(fit_.textures(), values.data(), values.size() * sizeof(float), "textures");
+    context().read(fit_.textures(), values, "textures");
     return values;
   }
 

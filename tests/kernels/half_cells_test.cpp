@@ -75,20 +75,20 @@ struct HalfCellProblem : GridProblem {
 
 std::vector<float> readFloats(const cl::Buffer& buffer, std::size_t count) {
   std::vector<float> values(count);
-  test::testDevice().read(buffer, values.data(), count * sizeof(float), "half cells");
+  test::testDevice().read(buffer, values, "half cells");
   return values;
 }
 
 TEST_P(HalfCellsTest, GramMatricesEqualReference) {
   HalfCellProblem problem(GetParam());
   const int n_count = problem.space_.expressions;
-  const int groups = problem.halves.halfColumns() / 16;
+  const int groups = problem.halves.rows().groups;
   const auto pairs = static_cast<std::size_t>(n_count * (n_count + 1) / 2);
   const std::vector<float> grams =
-      readFloats(problem.halves.grams(), static_cast<std::size_t>(problem.halves.halfRows() * groups) * pairs * 16);
-  for (int y = 0; y < problem.halves.halfRows(); ++y) {
+      readFloats(problem.halves.grams(), static_cast<std::size_t>(problem.halves.rows().count * groups) * pairs * 16);
+  for (int y = 0; y < problem.halves.rows().count; ++y) {
     for (int x = 0; x < 2 * problem.space_.columns; ++x) {
-      const Eigen::MatrixXd deltas = problem.deltas(problem.halves.firstHalfRow() + y, x);
+      const Eigen::MatrixXd deltas = problem.deltas(problem.halves.rows().first + y, x);
       const Eigen::MatrixXd expected = deltas * deltas.transpose();
       for (int m = 0; m < n_count; ++m) {
         for (int n = 0; n <= m; ++n) {
@@ -107,19 +107,19 @@ TEST_P(HalfCellsTest, FitEqualsReference) {
   HalfCellProblem problem(GetParam());
   problem.halves.fit(problem.window_, kRidge);
   const int c = problem.space_.textures;
-  const std::size_t sides_begin = device::roundUp(static_cast<std::size_t>(c * (c + 1) / 2), 16);
+  const std::size_t sides_begin = roundUp(toSize(c * (c + 1) / 2), 16);
   const std::size_t entries = sides_begin + problem.space_.cellFloats();
   const std::vector<float> halves =
       readFloats(problem.halves.equations(),
-                 static_cast<std::size_t>(problem.halves.halfRows() * problem.halves.halfColumns()) * entries);
+                 static_cast<std::size_t>(problem.halves.rows().count * problem.halves.rows().columns()) * entries);
   double error = 0.0;
   double energy = 0.0;
   const WindowRows& rows = problem.window_.rows();
-  for (int y = 0; y < problem.halves.halfRows(); ++y) {
-    const int half_row = problem.halves.firstHalfRow() + y;
+  for (int y = 0; y < problem.halves.rows().count; ++y) {
+    const int half_row = problem.halves.rows().first + y;
     for (int x = 0; x < 2 * problem.space_.columns; ++x) {
       const reference::HalfCellFit fit = problem.expected(half_row, x);
-      const float* got = halves.data() + static_cast<std::size_t>(y * problem.halves.halfColumns() + x) * entries;
+      const float* got = halves.data() + static_cast<std::size_t>(y * problem.halves.rows().columns() + x) * entries;
       // What rounding does to the solution grows with the condition of the system.
       const double condition =
           std::max(1.0, problem.weightsAt(half_row, x).squaredNorm() / static_cast<double>(kRidge));
@@ -206,10 +206,10 @@ TEST_P(HalfCellsTest, BlocksStayPositiveWhereTwoTexturesShareTheirWeights) {
   problem.window_.set(problem.window_.rows(), weights, weights);
   problem.halves.fit(problem.window_, kSmallRidge);
   const std::size_t entries =
-      device::roundUp(static_cast<std::size_t>(c * (c + 1) / 2), 16) + problem.space_.cellFloats();
+      roundUp(toSize(c * (c + 1) / 2), 16) + problem.space_.cellFloats();
   const std::vector<float> halves =
       readFloats(problem.halves.equations(),
-                 static_cast<std::size_t>(problem.halves.halfRows() * problem.halves.halfColumns()) * entries);
+                 static_cast<std::size_t>(problem.halves.rows().count * problem.halves.rows().columns()) * entries);
   for (std::size_t half = 0; half < halves.size(); half += entries) {
     Eigen::MatrixXd block(c, c);
     for (int i = 0; i < c; ++i) {

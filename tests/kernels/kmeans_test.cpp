@@ -253,12 +253,12 @@ TEST(Kmeans, WritesNothingBeyondItsOutputs) {
                       .gram = context.upload(packKmeansGrams(grams), "gram"),
                       .labels = context.allocate(canary.size(), CL_MEM_READ_WRITE, "labels"),
                       .iterations = context.allocate(canary.size(), CL_MEM_READ_WRITE, "iterations")};
-  context.write(launch.labels, canary.data(), canary.size(), "labels");
-  context.write(launch.iterations, canary.data(), canary.size(), "iterations");
+  context.write(launch.labels, canary, "labels");
+  context.write(launch.iterations, canary, "iterations");
   launchKmeans(context, launch);
   std::vector<std::uint8_t> labels(canary.size()), iterations(canary.size());
-  context.read(launch.labels, labels.data(), labels.size(), "labels");
-  context.read(launch.iterations, iterations.data(), iterations.size(), "iterations");
+  context.read(launch.labels, labels, "labels");
+  context.read(launch.iterations, iterations, "iterations");
   for (std::size_t i = label_bytes; i < labels.size(); ++i) ASSERT_EQ(labels[i], 0xA5) << i;
   for (std::size_t i = iteration_bytes; i < iterations.size(); ++i) ASSERT_EQ(iterations[i], 0xA5) << i;
   for (std::size_t i = 0; i < label_bytes; ++i) ASSERT_LT(labels[i], 4) << i;

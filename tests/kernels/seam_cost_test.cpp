@@ -159,10 +159,10 @@ TEST(SeamCost, WritesNothingBeyondItsOutput) {
       .pair_masks = context.upload(std::vector<cl_int>{0, 1, 0, 2, 1, 2}, "pairs"),
       .labels = context.upload(std::vector<std::uint8_t>{0, 1, 2, 3, 0, 3, 2, 1, 0, 0, 1, 1, 1, 1, 1}, "labels"),
       .tables = context.allocate(canary.size() * sizeof(float), CL_MEM_READ_WRITE, "tables")};
-  context.write(launch.tables, canary.data(), canary.size() * sizeof(float), "tables");
+  context.write(launch.tables, canary, "tables");
   launchSeamCost(context, launch);
   std::vector<float> values(canary.size());
-  context.read(launch.tables, values.data(), values.size() * sizeof(float), "tables");
+  context.read(launch.tables, values, "tables");
   for (std::size_t i = 0; i < kEntries; ++i) ASSERT_GE(values[i], 0.0f) << i;
   for (std::size_t i = kEntries; i < values.size(); ++i) ASSERT_EQ(values[i], -7.0f) << i;
 }

@@ -45,7 +45,7 @@ std::vector<float> download(const blend::WeightMaps& maps) {
   const blend::WeightGrid& grid = maps.grid();
   const std::size_t channels = static_cast<std::size_t>(grid.channels());
   std::vector<float> blocks(grid.blocks() * channels * 16);
-  test::testDevice().read(maps.weights(), blocks.data(), blocks.size() * sizeof(float), "blended weights");
+  test::testDevice().read(maps.weights(), blocks, "blended weights");
   std::vector<float> weights;
   for (std::size_t cell = 0; cell < grid.cells(); ++cell) {
     for (std::size_t i = 0; i < channels; ++i) weights.push_back(blocks[(cell / 16 * channels + i) * 16 + cell % 16]);

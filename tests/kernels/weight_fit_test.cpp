@@ -139,7 +139,7 @@ TEST_P(WeightFit, SystemEqualsReference) {
     const WindowRows& rows = problem.window_.rows();
     const std::size_t entries = problem.space_.systemEntries();
     std::vector<float> system(static_cast<std::size_t>(rows.count() * problem.space_.columns) * entries);
-    GridProblem::context().read(problem.system_.equations(), system.data(), system.size() * sizeof(float), "system");
+    GridProblem::context().read(problem.system_.equations(), system, "system");
     const int c = problem.which_.textures;
     const std::size_t side_begin = entries - problem.space_.cellFloats();
     for (int row = rows.begin; row < rows.end; ++row) {

@@ -140,10 +140,10 @@ TEST(WeightMap, WritesNothingBeyondItsOutput) {
       .mask_weights = context.upload(cells.mask_weights, "weights"),
       .texture_of = context.upload(packTextureOf(randomTextures(3, 17, 4, 1), 3, 17), "textures"),
       .weights = context.allocate(canary.size(), CL_MEM_READ_WRITE, "weights")};
-  context.write(launch.weights, canary.data(), canary.size(), "weights");
+  context.write(launch.weights, canary, "weights");
   launchWeightMap(context, launch);
   std::vector<std::uint8_t> bytes(canary.size());
-  context.read(launch.weights, bytes.data(), bytes.size(), "weights");
+  context.read(launch.weights, bytes, "weights");
   for (std::size_t i = kBytes; i < bytes.size(); ++i) ASSERT_EQ(bytes[i], 0xA5) << i;
 }
 

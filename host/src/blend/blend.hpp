@@ -6,13 +6,14 @@
 #include <vector>
 
 #include "blend/weight_blend.hpp"
+#include "cl/layout.h"
 #include "device/device_context.hpp"
 #include "image/image_file.hpp"
 
 namespace facezip::blend {
 
-inline constexpr int kTileWidth = 16;  ///< texels, kernels/cl/blend.cl
-inline constexpr int kTileRows = 8;    ///< texels
+inline constexpr int kTileWidth = FACEZIP_TILE_SIDE;       ///< texels, kernels/cl/blend.cl
+inline constexpr int kTileRows = FACEZIP_BLEND_TILE_ROWS;  ///< texels
 
 /// What the kernel writes: samples of the neutral's type, or float32 in 1/255 of full scale, before rounding.
 enum class FrameForm { kSamples, kValues };
@@ -29,7 +30,7 @@ struct TextureShape {
       scale;  ///< [C][channels], steps of a sample (8-bit 1, 16-bit 1/257 and float 255 in 1/255) per code
   std::vector<float> zero;  ///< [C][channels], the code that means 0
 
-  int tilesAcross() const { return (width + kTileWidth - 1) / kTileWidth; }
+  int tilesAcross() const { return divideUp(width, kTileWidth); }
   std::size_t rowBytes() const { return frameShape(1).rowBytes(); }  ///< of neutral and frame
   std::size_t codeBytes() const { return difference_bits == 16 ? 2 : 1; }
   std::size_t differenceRowBytes() const {

@@ -34,19 +34,13 @@ WeightMaps::WeightMaps(device::DeviceContext& context, WeightGrid grid, std::spa
   decoding_.resize(2 * channels);
   gain_ = context.allocate(grid_.blocks() * 16 * sizeof(float), CL_MEM_READ_ONLY, "gains of cells");
   setGain({});
-  kernel_.setArg(0, codes_);
-  kernel_.setArg(1, active_);
-  kernel_.setArg(2, beta_);
-  kernel_.setArg(3, encoding_);
-  kernel_.setArg(4, weights_);
-  kernel_.setArg(9, gain_);
 }
 
 void WeightMaps::setGain(std::span<const float> gain) {
   assert(gain.empty() || gain.size() == grid_.cells());
   std::vector<float> padded(grid_.blocks() * 16, 1.0f);
   std::ranges::copy(gain, padded.begin());
-  context_.write(gain_, padded.data(), padded.size() * sizeof(float), "gains of cells");
+  context_.write(gain_, padded, "gains of cells");
 }
 
 cl::Event WeightMaps::blend(std::span<const float> beta, int begin_row, int end_row) {
@@ -65,20 +59,16 @@ cl::Event WeightMaps::blend(std::span<const float> beta, int begin_row, int end_
     decoding_[i] = static_cast<float>(grid_.scale[i]);
     decoding_[grid_.scale.size() + i] = static_cast<float>(grid_.offset[i] * beta_sum);
   }
-  context_.write(active_, active_expressions_.data(), active_expressions_.size() * sizeof(cl_int),
-                 "expressions in use");
-  context_.write(beta_, active_beta_.data(), active_beta_.size() * sizeof(float), "blendshape weights");
-  context_.write(encoding_, decoding_.data(), decoding_.size() * sizeof(float), "weight encoding");
+  context_.write(active_, active_expressions_, "expressions in use");
+  context_.write(beta_, active_beta_, "blendshape weights");
+  context_.write(encoding_, decoding_, "weight encoding");
 
-  const std::size_t columns = static_cast<std::size_t>(grid_.columns);
-  const std::size_t first_block = static_cast<std::size_t>(begin_row) * columns / 16;
-  const std::size_t end_block = (static_cast<std::size_t>(end_row) * columns + 15) / 16;
-  kernel_.setArg(5, static_cast<cl_int>(active_expressions_.size()));
-  kernel_.setArg(6, static_cast<cl_int>(grid_.expressions));
-  kernel_.setArg(7, static_cast<cl_ulong>(first_block));
-  kernel_.setArg(8, static_cast<cl_ulong>(end_block - first_block));
-  const std::size_t items = (end_block - first_block) * items_per_block_;
-  return context_.run(kernel_, cl::NDRange(device::roundUp(items, local_size_)), cl::NDRange(local_size_));
+  const cl_ulong first_block = toSize(begin_row, grid_.columns) / 16;
+  const cl_ulong block_count = divideUp(toSize(end_row, grid_.columns), 16) - first_block;
+  const std::size_t items = roundUp(block_count * items_per_block_, local_size_);
+  return context_.launch(kernel_, device::WorkItems(items).inGroupsOf(local_size_), codes_, active_, beta_, encoding_,
+                         weights_, static_cast<cl_int>(active_expressions_.size()), grid_.expressions, first_block,
+                         block_count, gain_);
 }
 
 void requireWeights(std::span<const float> beta, std::span<const std::string> names) {

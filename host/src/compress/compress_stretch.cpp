@@ -93,19 +93,13 @@ void launchCompressStretch(device::DeviceContext& context, const GridBand& band,
       tiles * static_cast<std::size_t>(window.space().textures * band.shape.channels) * kTileTexels * sizeof(float),
       "compress and stretch maps");
   const std::size_t rows = gpu ? 1 : kTileSide;
-  cl::Kernel kernel =
+  const cl::Kernel kernel =
       context.kernel("compress_stretch.cl", "compress_stretch",
                      fmt::format("{} -D ROWS={}", gridDefines(band.shape, window.space(), band.weight_scale), rows));
-  const cl::Buffer* buffers[] = {&band.tiles.positions(), &band.tiles.maskWeights(), &band.differences,
-                                 &window.weightsBuffer(), &textures};
-  cl_uint argument = 0;
-  for (const cl::Buffer* buffer : buffers) kernel.setArg(argument++, *buffer);
-  kernel.setArg(argument++, static_cast<cl_int>(band.first_row));
-  kernel.setArg(argument++, static_cast<cl_int>(window.rows().begin));
-  kernel.setArg(argument++, static_cast<cl_int>(window.space().columns));
-  kernel.setArg(argument++, static_cast<cl_int>(window.space().rows));
   const std::size_t items = kTileTexels / rows;
-  context.run(kernel, cl::NDRange(items, tiles), cl::NDRange(context.workGroupSize(kernel, items), 1));
+  context.launch(kernel, device::WorkItems(items, tiles).inGroupsOf(context.workGroupSize(kernel, items), 1),
+                 band.tiles.positions(), band.tiles.maskWeights(), band.differences, window.weightsBuffer(), textures,
+                 band.first_row, window.rows().begin, window.space().columns, window.space().rows);
 }
 
 }  // namespace facezip::compress

@@ -20,11 +20,11 @@ void DeviceTiles::upload(const TileMasks& masks) {
   begin_ = masks.mask_begin;
   index_ = masks.mask_index;
   static_assert(sizeof(TilePosition) == 2 * sizeof(cl_int));
-  positions_.upload(std::span<const TilePosition>(masks.tiles));
-  mask_begin_.upload(std::span<const int>(masks.mask_begin));
-  mask_index_.upload(std::span<const int>(masks.mask_index));
-  mask_weights_.upload(std::span<const float>(masks.mask_weights));
-  texel_weights_.upload(std::span<const float>(masks.texel_weights));
+  positions_.upload(masks.tiles);
+  mask_begin_.upload(masks.mask_begin);
+  mask_index_.upload(masks.mask_index);
+  mask_weights_.upload(masks.mask_weights);
+  texel_weights_.upload(masks.texel_weights);
 }
 
 std::span<const int> DeviceTiles::masksOf(std::size_t t) const {

@@ -1,16 +1,18 @@
 // tile_band.hpp - one band of rows of one map, cut into tiles of 16 x 16 texels.
-// The unit of work of every texel-sized kernel; kernels/cl/common.cl describes the same layout for the device.
+// The unit of work of every texel-sized kernel; kernels/cl/tiles.h describes the same layout for the device.
 #pragma once
 
 #include <cstddef>
 #include <vector>
 
+#include "cl/layout.h"
 #include "image/image_file.hpp"
+#include "io/counts.hpp"
 
 namespace facezip::compress {
 
-inline constexpr int kTileSide = 16;
-inline constexpr int kTileTexels = kTileSide * kTileSide;
+inline constexpr int kTileSide = FACEZIP_TILE_SIDE;
+inline constexpr int kTileTexels = FACEZIP_TILE_TEXELS;
 
 /// Position of a tile: column of tiles in the image, row of tiles in the band.
 struct TilePosition {
@@ -29,9 +31,10 @@ struct BandShape {
 
   /// Bytes of the raw samples: neutral first, then the expressions, each `rows` rows.
   std::size_t sampleBytes() const {
-    return static_cast<std::size_t>(expressions + 1) * static_cast<std::size_t>(rows) *
-           static_cast<std::size_t>(width) * static_cast<std::size_t>(channels) * image::sampleBytes(sample_type);
+    return toSize(expressions + 1, rows, width, channels) * image::sampleBytes(sample_type);
   }
+  int tileColumns() const { return divideUp(width, kTileSide); }
+  int tileRows() const { return divideUp(rows, kTileSide); }
   /// Differences of 8-bit samples are exact in 16-bit integers; all others are floats. Both in units of 1/255.
   std::size_t differenceBytes() const { return sample_type == image::SampleType::kUint8 ? 2 : 4; }
 };

@@ -15,14 +15,9 @@ std::string encodeDefines(const BandShape& shape, int bits) {
 }  // namespace
 
 void TextureEncoder::clear(const BandShape& shape, int bits) {
-  cl::Kernel kernel =
-      context_.kernel("difference_texture_encode.cl", "difference_texture_clear", encodeDefines(shape, bits));
-  kernel.setArg(0, encoding_.buffer());
-  kernel.setArg(1, codes_.buffer());
-  context_.run(kernel,
-               cl::NDRange(static_cast<std::size_t>(shape.width), static_cast<std::size_t>(shape.rows),
-                           static_cast<std::size_t>(textures_count_)),
-               cl::NullRange);
+  context_.launch(
+      context_.kernel("difference_texture_encode.cl", "difference_texture_clear", encodeDefines(shape, bits)),
+      device::WorkItems(shape.width, shape.rows, textures_count_), encoding_, codes_);
 }
 
 void TextureEncoder::encode(const DeviceTiles& tiles, const BandShape& shape, const cl::Buffer& textures,
@@ -33,22 +28,18 @@ void TextureEncoder::encode(const DeviceTiles& tiles, const BandShape& shape, co
                              encoding.size() * static_cast<std::size_t>(bits / 8));
   std::vector<cl_float2> factors;
   for (const TextureEncoding& e : encoding) factors.push_back({{e.scale > 0.0f ? 1.0f / e.scale : 0.0f, e.offset}});
-  encoding_.upload(std::span<const cl_float2>(factors));
+  encoding_.upload(factors);
   codes_.reserve(codes.size());
   clear(shape, bits);
   if (tiles.tileCount() > 0) {
     device::requireBytes(context_, textures, tiles.tileCount() * encoding.size() * kTileTexels * sizeof(float),
                          "difference textures of a band");
-    cl::Kernel kernel =
+    const cl::Kernel kernel =
         context_.kernel("difference_texture_encode.cl", "difference_texture_encode", encodeDefines(shape, bits));
-    kernel.setArg(0, tiles.positions());
-    kernel.setArg(1, textures);
-    kernel.setArg(2, encoding_.buffer());
-    kernel.setArg(3, codes_.buffer());
-    kernel.setArg(4, static_cast<cl_int>(shape.width));
-    kernel.setArg(5, static_cast<cl_int>(shape.rows));
-    context_.run(kernel, cl::NDRange(kTileSide, static_cast<std::size_t>(textures_count_), tiles.tileCount()),
-                 cl::NDRange(context_.workGroupSize(kernel, kTileSide), 1, 1));
+    context_.launch(kernel,
+                    device::WorkItems(kTileSide, textures_count_, tiles.tileCount())
+                        .inGroupsOf(context_.workGroupSize(kernel, kTileSide), 1, 1),
+                    tiles.positions(), textures, encoding_, codes_, shape.width, shape.rows);
   }
   const device::MappedBytes mapped = codes_.mapForReading(codes.size());
   if (!codes.empty()) std::memcpy(codes.data(), mapped.bytes().data(), codes.size());

@@ -16,13 +16,9 @@ std::vector<TextureRange> TextureRangeFinder::findPerTile(const DeviceTiles& til
                        "difference textures of a band");
   const std::size_t bytes = tiles.tileCount() * planes * sizeof(cl_float2);
   ranges_.reserve(bytes);
-  cl::Kernel kernel = context_.kernel("difference_texture_range.cl", "difference_texture_range");
-  kernel.setArg(0, tiles.maskBegin());
-  kernel.setArg(1, tiles.maskWeights());
-  kernel.setArg(2, textures);
-  kernel.setArg(3, ranges_.buffer());
-  kernel.setArg(4, static_cast<cl_int>(planes));
-  context_.run(kernel, cl::NDRange(tiles.tileCount()), cl::NDRange(1));
+  context_.launch(context_.kernel("difference_texture_range.cl", "difference_texture_range"),
+                  device::WorkItems(tiles.tileCount()).inGroupsOf(1), tiles.maskBegin(), tiles.maskWeights(), textures,
+                  ranges_, static_cast<cl_int>(planes));
   const device::MappedBytes mapped = ranges_.mapForReading(bytes);
   const std::span<const cl_float2> ranges = mapped.as<const cl_float2>();
   for (std::size_t i = first * planes; i < end * planes; ++i) result.push_back({ranges[i].s[0], ranges[i].s[1]});

@@ -58,7 +58,7 @@ class MapWindow {
     first_own_tile_ = first_behind(own_begin_);
     end_of_own_tiles_ = first_behind(own_end_);
     tiles_.upload(masks_);
-    tile_at_.upload(std::span<const int>(tileLookup(masks_, shape_)));
+    tile_at_.upload(tileLookup(masks_, shape_));
     const cl::Buffer& raw = samples_.upload(window_.samples());
     differences_.reserve(differenceBufferBytes(shape_, masks_.tiles.size()));
     computeDifferences(context_, tiles_, shape_, raw, differences_.buffer());

@@ -5,8 +5,7 @@
 namespace facezip::compress {
 
 WeightWindow::WeightWindow(device::DeviceContext& context, const WeightSpace& space)
-    : context_(context),
-      space_(space),
+    : space_(space),
       weights_(context, "grid weights"),
       start_(context, "grid weights at the start") {
   assert(space.columns >= 1 && space.rows >= 1 && space.expressions >= 1);
@@ -25,7 +24,7 @@ void WeightWindow::set(const WindowRows& rows, std::span<const float> weights, s
 
 std::vector<float> WeightWindow::weights() const {
   std::vector<float> values(static_cast<std::size_t>(rows_.count()) * space_.rowFloats());
-  context_.read(weights_.buffer(), values.data(), values.size() * sizeof(float), "grid weights");
+  weights_.read(values);
   return values;
 }
 

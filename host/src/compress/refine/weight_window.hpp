@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "cl/layout.h"
 #include "device/device_context.hpp"
 #include "device/pooled_buffer.hpp"
 
@@ -18,12 +19,12 @@ struct WeightSpace {
   int expressions = 0;  ///< N
 
   /// N as device buffers have it: a multiple of 16, the rest is 0.
-  std::size_t lanes() const { return device::roundUp(static_cast<std::size_t>(expressions), 16); }
+  std::size_t lanes() const { return roundUp(toSize(expressions), FACEZIP_VECTOR); }
   std::size_t cellFloats() const { return static_cast<std::size_t>(textures) * lanes(); }
   std::size_t rowFloats() const { return static_cast<std::size_t>(columns) * cellFloats(); }
   /// Numbers that the normal equations of a cell take, as kernels/cl/weight_system.cl lays them out.
   std::size_t systemEntries() const {
-    return device::roundUp(static_cast<std::size_t>(2 * textures * (textures + 1)), 16) + cellFloats();
+    return toSize(FACEZIP_CELL_MATRICES(textures)) + cellFloats();
   }
 };
 
@@ -55,7 +56,6 @@ class WeightWindow {
   const cl::Buffer& startBuffer() const { return start_.buffer(); }
 
  private:
-  device::DeviceContext& context_;
   WeightSpace space_;
   WindowRows rows_;
   device::PooledBuffer weights_;

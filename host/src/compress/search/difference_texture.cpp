@@ -14,7 +14,7 @@ std::vector<float> kernelCoefficients(const TextureCoefficients& table) {
   const auto textures = static_cast<std::size_t>(table.textures);
   const auto expressions = static_cast<std::size_t>(table.expressions);
   const auto masks = static_cast<std::size_t>(table.masks);
-  const std::size_t padded = device::roundUp(expressions, 2);
+  const std::size_t padded = roundUp(expressions, 2);
   assert(table.values.size() == masks * textures * expressions);
   std::vector<float> result(masks * padded * textures, 0.0f);
   for (std::size_t k = 0; k < masks; ++k) {
@@ -53,18 +53,14 @@ const cl::Buffer& DifferenceTextures::compute(const DeviceTiles& tiles, const cl
   if (tiles.tileCount() == 0) return textures_.buffer();
   // Sixteen texels fill the registers of a CPU; four keep to those that a GPU gives a work-item.
   const std::size_t width = variant_ == device::KernelVariant::kGpu ? 4 : 16;
-  cl::Kernel kernel =
+  const cl::Kernel kernel =
       context_.kernel("difference_texture.cl", "difference_texture",
                       fmt::format("{} -D TEXTURES={} -D WIDTH={}", differenceDefines(shape), textures_count_, width));
-  kernel.setArg(0, tiles.maskBegin());
-  kernel.setArg(1, tiles.maskIndex());
-  kernel.setArg(2, tiles.maskWeights());
-  kernel.setArg(3, coefficients_);
-  kernel.setArg(4, differences);
-  kernel.setArg(5, textures_.buffer());
-  kernel.setArg(6, static_cast<cl_int>(expressions_));
   const std::size_t items = kTileTexels / width;
-  context_.run(kernel, cl::NDRange(items, tiles.tileCount()), cl::NDRange(context_.workGroupSize(kernel, items), 1));
+  context_.launch(kernel,
+                  device::WorkItems(items, tiles.tileCount()).inGroupsOf(context_.workGroupSize(kernel, items), 1),
+                  tiles.maskBegin(), tiles.maskIndex(), tiles.maskWeights(), coefficients_, differences, textures_,
+                  expressions_);
   return textures_.buffer();
 }
 

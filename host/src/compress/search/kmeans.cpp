@@ -93,19 +93,13 @@ std::vector<float> packKmeansGrams(const GramMatrices& grams) {
 
 cl::Event launchKmeans(device::DeviceContext& context, const KmeansLaunch& launch) {
   const int blocks = paddedFragments(launch.expressions, OriginRow::kWithout) / kFragmentLanes;
-  cl::Kernel kernel = context.kernel("kmeans.cl", "kmeans",
+  const cl::Kernel kernel = context.kernel("kmeans.cl", "kmeans",
                                      fmt::format("-D CLUSTERS={} -D BLOCKS={}", launch.options.clusters, blocks));
-  kernel.setArg(0, launch.gram);
-  kernel.setArg(1, launch.labels);
-  kernel.setArg(2, launch.iterations);
-  kernel.setArg(3, static_cast<cl_int>(launch.expressions));
-  kernel.setArg(4, static_cast<cl_int>(launch.masks));
-  kernel.setArg(5, static_cast<cl_int>(launch.options.restarts));
-  kernel.setArg(6, static_cast<cl_int>(launch.options.max_iterations));
-  kernel.setArg(7, static_cast<cl_ulong>(launch.options.seed));
   const std::size_t local = context.workGroupSize(kernel, 64);
-  const std::size_t runs = static_cast<std::size_t>(launch.masks) * static_cast<std::size_t>(launch.options.restarts);
-  return context.run(kernel, cl::NDRange(device::roundUp(runs, local)), cl::NDRange(local));
+  const std::size_t runs = toSize(launch.masks, launch.options.restarts);
+  return context.launch(kernel, device::WorkItems(roundUp(runs, local)).inGroupsOf(local), launch.gram, launch.labels,
+                        launch.iterations, launch.expressions, launch.masks, launch.options.restarts,
+                        launch.options.max_iterations, launch.options.seed);
 }
 
 KmeansRuns runKmeans(device::DeviceContext& context, const GramMatrices& grams, const KmeansOptions& options) {
@@ -128,8 +122,8 @@ KmeansRuns runKmeans(device::DeviceContext& context, const GramMatrices& grams, 
                             .labels = context.allocate(runs.labels.size(), CL_MEM_READ_WRITE, "k-means labels"),
                             .iterations = context.allocate(iteration_bytes, CL_MEM_WRITE_ONLY, "k-means iterations")};
   launchKmeans(context, launch);
-  context.read(launch.labels, runs.labels.data(), runs.labels.size(), "k-means labels");
-  context.read(launch.iterations, runs.iterations.data(), iteration_bytes, "k-means iterations");
+  context.read(launch.labels, runs.labels, "k-means labels");
+  context.read(launch.iterations, runs.iterations, "k-means iterations");
   return runs;
 }
 

@@ -40,18 +40,12 @@ PackedPairs packPairs(const GramMatrices& grams, int first, int count, int padde
 
 cl::Event launchSeamCost(device::DeviceContext& context, const SeamCostLaunch& launch) {
   const int blocks = paddedFragments(launch.expressions, OriginRow::kWith) / kFragmentLanes;
-  cl::Kernel kernel =
+  const cl::Kernel kernel =
       context.kernel("seam_cost.cl", "seam_cost", fmt::format("-D CLUSTERS={} -D BLOCKS={}", launch.clusters, blocks));
-  kernel.setArg(0, launch.gram);
-  kernel.setArg(1, launch.pair_masks);
-  kernel.setArg(2, launch.labels);
-  kernel.setArg(3, launch.tables);
-  kernel.setArg(4, static_cast<cl_int>(launch.expressions));
-  kernel.setArg(5, static_cast<cl_int>(launch.pairs));
   const std::size_t local = context.workGroupSize(kernel, 64);
-  const std::size_t entries = static_cast<std::size_t>(launch.pairs) * static_cast<std::size_t>(launch.clusters) *
-                              static_cast<std::size_t>(launch.clusters);
-  return context.run(kernel, cl::NDRange(device::roundUp(entries, local)), cl::NDRange(local));
+  const std::size_t entries = toSize(launch.pairs, launch.clusters, launch.clusters);
+  return context.launch(kernel, device::WorkItems(roundUp(entries, local)).inGroupsOf(local), launch.gram,
+                        launch.pair_masks, launch.labels, launch.tables, launch.expressions, launch.pairs);
 }
 
 SeamTables computeSeamTables(device::DeviceContext& context, const GramMatrices& grams, const Clustering& clustering,
@@ -82,7 +76,7 @@ SeamTables computeSeamTables(device::DeviceContext& context, const GramMatrices&
                                 .labels = labels,
                                 .tables = context.allocate(value_bytes, CL_MEM_WRITE_ONLY, "seam cost tables")};
     launchSeamCost(context, launch);
-    context.read(launch.tables, values.data(), value_bytes, "seam cost tables");
+    context.read(launch.tables, values, "seam cost tables");
     for (std::size_t i = 0; i < values.size(); ++i) {
       tables.values.push_back(packed.scales[i / table] * static_cast<double>(values[i]));
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "device/device_context.hpp"
+#include "device/pooled_buffer.hpp"
 
 namespace facezip::compress {
 
@@ -42,14 +43,14 @@ class WeightMapper {
   void fillAll(const CellMasks& cells, std::span<std::uint8_t> out);
 
  private:
-  cl::Buffer& pooled(cl::Buffer& buffer, std::size_t& capacity, std::size_t bytes, const char* what);
-
   device::DeviceContext& context_;
   int expressions_;
   int clusters_;
   cl::Buffer texture_of_;
-  cl::Buffer cell_begin_, mask_index_, mask_weights_, weights_;
-  std::size_t cell_begin_capacity_ = 0, mask_index_capacity_ = 0, mask_weights_capacity_ = 0, weights_capacity_ = 0;
+  device::PooledBuffer cell_begin_;
+  device::PooledBuffer mask_index_;
+  device::PooledBuffer mask_weights_;
+  device::PooledBuffer weights_;
 };
 
 /// Sizes and device buffers of one launch of kernels/cl/weight_map.cl, which describes them.

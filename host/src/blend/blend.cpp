@@ -21,7 +21,7 @@ Plane neutralPlane(int channel) { return {toSize(channel) * kTileWidth, 4}; }
 
 /// As kernels/cl/blend.cl describes it.
 Plane codePlane(const TextureShape& shape, int quad_planes, int channel, int difference) {
-  const std::size_t plane = toSize(channel) * toSize(shape.differences) + toSize(difference);
+  const std::size_t plane = toSize(channel, shape.differences) + toSize(difference);
   if (plane >= toSize(quad_planes)) return {plane * kTileWidth, 4};
   return {plane / 4 * 4 * kTileWidth + plane % 4 * 4, 16};
 }
@@ -86,9 +86,7 @@ std::size_t TextureShape::neutralTileRowBytes() const {
   return toSize(channels) * image::sampleBytes(sample_type) * kTileWidth;
 }
 
-std::size_t TextureShape::codeTileRowBytes() const {
-  return toSize(channels) * toSize(differences) * codeBytes() * kTileWidth;
-}
+std::size_t TextureShape::codeTileRowBytes() const { return toSize(channels, differences) * codeBytes() * kTileWidth; }
 
 TextureRows::TextureRows(device::DeviceContext& context, TextureShape shape, int most_rows, int cell_columns,
                          int cell_rows, device::KernelVariant variant)
@@ -97,7 +95,7 @@ TextureRows::TextureRows(device::DeviceContext& context, TextureShape shape, int
       cell_columns_(cell_columns),
       cell_rows_(cell_rows),
       most_rows_(roundUp(toSize(most_rows), kTileRows)) {
-  assert(shape_.scale.size() == toSize(shape_.differences) * toSize(shape_.channels));
+  assert(shape_.scale.size() == toSize(shape_.differences, shape_.channels));
   assert(shape_.zero.size() == shape_.scale.size());
   gpu_ = context.resolve(variant) == device::KernelVariant::kGpu;
   clang_builtins_ = context.clangBuiltins(variant);
@@ -193,7 +191,7 @@ void TextureRows::blendValues(const cl::Buffer& weights, std::span<float> out) {
 }
 
 void TextureRows::blendInto(const cl::Buffer& weights, std::span<std::byte> out, FrameForm form) {
-  const std::size_t row_bytes = toSize(shape_.width) * toSize(shape_.channels) * frameSampleBytes(form);
+  const std::size_t row_bytes = toSize(shape_.width, shape_.channels) * frameSampleBytes(form);
   assert(out.size() == toSize(end_ - begin_) * row_bytes);
   try {
     if (fitsFrame(out, form)) {
@@ -219,11 +217,6 @@ void TextureRows::blendInto(const cl::Buffer& weights, std::span<std::byte> out,
   } catch (const cl::Error& error) {
     throw device::toDeviceError(error, "reading a frame", context_.info());
   }
-}
-
-std::pair<int, int> cellRowsOf(int begin, int end, int weight_scale, int cell_rows) {
-  const auto above = [weight_scale](int row) { return divideDown(2 * row + 1 - weight_scale, 2 * weight_scale); };
-  return {std::clamp(above(begin), 0, cell_rows - 1), std::clamp(above(end - 1) + 2, 1, cell_rows)};
 }
 
 }  // namespace facezip::blend

@@ -9,6 +9,7 @@
 #include "cl/layout.h"
 #include "device/device_context.hpp"
 #include "image/image_file.hpp"
+#include "io/counts.hpp"
 
 namespace facezip::blend {
 
@@ -33,16 +34,14 @@ struct TextureShape {
   int tilesAcross() const { return divideUp(width, kTileWidth); }
   std::size_t rowBytes() const { return frameShape(1).rowBytes(); }  ///< of neutral and frame
   std::size_t codeBytes() const { return difference_bits == 16 ? 2 : 1; }
-  std::size_t differenceRowBytes() const {
-    return static_cast<std::size_t>(width) * static_cast<std::size_t>(channels) * codeBytes();
-  }
+  std::size_t differenceRowBytes() const { return toSize(width, channels) * codeBytes(); }
   /// One texel row of one tile: 16 texels of the neutral, and of all differences. A tile has the rows of the one, then
   /// those of the other.
   std::size_t neutralTileRowBytes() const;
   std::size_t codeTileRowBytes() const;
   std::size_t tileBytes() const { return kTileRows * (neutralTileRowBytes() + codeTileRowBytes()); }
   /// A row of tiles.
-  std::size_t tilesBytes() const { return static_cast<std::size_t>(tilesAcross()) * tileBytes(); }
+  std::size_t tilesBytes() const { return toSize(tilesAcross()) * tileBytes(); }
   image::ImageShape frameShape(int rows) const { return {width, rows, channels, sample_type}; }
 };
 
@@ -77,7 +76,7 @@ class TextureRows {
   /// Runs the kernel into `frame`, frameBytes() bytes whose rows are padded to whole tiles; for blend() and benchmarks.
   cl::Event enqueue(const cl::Buffer& weights, const cl::Buffer& frame, FrameForm form = FrameForm::kSamples);
   std::size_t frameBytes(FrameForm form = FrameForm::kSamples) const {
-    return static_cast<std::size_t>(tileRowCount()) * kTileRows * paddedRowBytes(form);
+    return toSize(tileRowCount()) * kTileRows * paddedRowBytes(form);
   }
   std::size_t paddedRowBytes(FrameForm form = FrameForm::kSamples) const;
 
@@ -112,8 +111,5 @@ class TextureRows {
   std::size_t most_rows_;
   std::vector<std::byte> tiles_;  // staging of load()
 };
-
-/// Cell rows [first, second) that texel rows [begin, end) interpolate between.
-std::pair<int, int> cellRowsOf(int begin, int end, int weight_scale, int cell_rows);
 
 }  // namespace facezip::blend

@@ -43,8 +43,8 @@ std::uint64_t diskBytes(const fs::path& directory) {
 void layGrid(CompressionState& state) {
   if (state.rates) chooseRate(state);
   state.progress.stage("weight grid", 0);
-  state.grid = raster::makeWeightGrid(*state.texel_masks, *state.maps.maps[state.maps.reference].raster,
-                                      state.options.weight_scale);
+  state.grid = raster::makeGridMasks(*state.texel_masks, *state.maps.maps[state.maps.reference].raster,
+                                     state.options.weight_scale);
   state.guides = makeMaskGuides(state.face, state.masks, state.grid);  // while the grid has its masks
   state.clock.book("weight grid");
   if (state.expressions() <= state.options.differences) {

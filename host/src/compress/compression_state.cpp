@@ -26,8 +26,8 @@ CompressionState::CompressionState(const Capture& open_capture, const std::files
 
 WeightSpace CompressionState::weightSpace() const {
   const image::ImageShape& shape = maps.maps[maps.reference].samples->shape();
-  const auto cells = [this](int side) { return (side + options.weight_scale - 1) / options.weight_scale; };
-  return {cells(shape.width), cells(shape.height), options.differences, expressions()};
+  return {raster::WeightGrid::over(shape.width, shape.height, options.weight_scale), options.differences,
+          expressions()};
 }
 
 double CompressionState::coveredTexels(const OpenMap& map) const {
@@ -39,7 +39,7 @@ double CompressionState::coveredTexels(const OpenMap& map) const {
 std::uint64_t CompressionState::residentBytes() const {
   constexpr std::uint64_t kMasksOfACell = 8;
   const WeightSpace space = weightSpace();
-  const std::uint64_t cells = static_cast<std::uint64_t>(space.columns) * static_cast<std::uint64_t>(space.rows);
+  const std::uint64_t cells = space.cellCount();
   std::set<const raster::TexelClasses*> classes;
   std::uint64_t class_bytes = 0;
   for (const OpenMap& map : maps.maps) {

@@ -22,8 +22,8 @@
 #include "compress/weight_group.hpp"
 #include "facezip/compress.hpp"
 #include "io/staged_directory.hpp"
+#include "raster/grid_masks.hpp"
 #include "raster/texel_masks.hpp"
-#include "raster/weight_grid.hpp"
 
 namespace facezip::compress {
 
@@ -64,7 +64,7 @@ struct CompressionState {
   std::unique_ptr<raster::TexelMasks> texel_masks;
   GramSlots gram_slots;
   MapSet maps;
-  raster::WeightGrid grid;
+  raster::GridMasks grid;
   MaskGuides guides;
   std::optional<Importance> importance;
   std::unique_ptr<RateSearch> rates;  ///< where a target or budget was given

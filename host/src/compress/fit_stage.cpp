@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "compress/codes/texture_range.hpp"
+#include "compress/codes/difference_texture_range.hpp"
 #include "compress/compress_stretch.hpp"
 #include "compress/refine/refinement.hpp"
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "compress/codes/texture_encoder.hpp"
+#include "compress/codes/difference_texture_encode.hpp"
 #include "facezip/package.hpp"
 #include "package/guides.hpp"
 #include "package/package_writer.hpp"

@@ -2,6 +2,8 @@
 
 #include <cassert>
 
+#include "io/counts.hpp"
+
 namespace facezip::compress {
 
 DeviceTiles::DeviceTiles(device::DeviceContext& context)
@@ -29,8 +31,7 @@ void DeviceTiles::upload(const TileMasks& masks) {
 
 std::span<const int> DeviceTiles::masksOf(std::size_t t) const {
   assert(t < tile_count_);
-  return std::span<const int>(index_).subspan(static_cast<std::size_t>(begin_[t]),
-                                              static_cast<std::size_t>(begin_[t + 1] - begin_[t]));
+  return std::span<const int>(index_).subspan(toSize(begin_[t]), toSize(begin_[t + 1] - begin_[t]));
 }
 
 }  // namespace facezip::compress

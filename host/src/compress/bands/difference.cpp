@@ -5,6 +5,7 @@
 #include <cassert>
 
 #include "device/pooled_buffer.hpp"
+#include "io/counts.hpp"
 
 namespace facezip::compress {
 namespace {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "compress/bands/difference.hpp"
+#include "io/counts.hpp"
 
 namespace facezip::compress {
 
@@ -23,7 +24,7 @@ const cl::Buffer& DifferenceFit::compute(const GridBand& band, const WeightWindo
 
 const cl::Buffer& DifferenceFit::computeRounded(const GridBand& band, const WeightWindow& window, float ridge,
                                                 std::span<const TextureEncoding> encoding, int bits) {
-  assert(encoding.size() == static_cast<std::size_t>(space_.textures * band.shape.channels));
+  assert(encoding.size() == toSize(space_.textures * band.shape.channels));
   std::vector<cl_float2> codes;
   for (const TextureEncoding& e : encoding) {
     codes.push_back({{e.scale, e.scale > 0.0f ? std::round(-e.offset / e.scale) : 0.0f}});

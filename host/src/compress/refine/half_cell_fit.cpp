@@ -4,6 +4,8 @@
 
 #include <cassert>
 
+#include "io/counts.hpp"
+
 namespace facezip::compress {
 
 std::size_t halfCellEntries(const WeightSpace& space) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "io/counts.hpp"
+
 namespace facezip::compress {
 namespace {
 
@@ -30,7 +32,8 @@ std::size_t HalfCells::bytesOfCellRow(const WeightSpace& space) {
 void HalfCells::moveTo(const WindowRows& rows) {
   window_rows_ = rows;
   const int first = std::max(0, 2 * rows.free_begin - 1);
-  rows_ = {.first = first, .count = std::min(2 * space_.rows, 2 * rows.free_end + 1) - first, .groups = groupsOf(space_)};
+  rows_ = {
+      .first = first, .count = std::min(2 * space_.rows, 2 * rows.free_end + 1) - first, .groups = groupsOf(space_)};
   assert(rows_.first / 2 >= rows.begin && divideUp(rows_.first + rows_.count, 2) <= rows.end);
   grams_.reserve(halfCellGramBytes(rows_, space_.expressions));
   halves_.reserve(toSize(rows_.count, rows_.columns()) * halfCellEntries(space_) * sizeof(float));

@@ -4,6 +4,8 @@
 
 #include <cassert>
 
+#include "io/counts.hpp"
+
 namespace facezip::compress {
 
 void launchWeightRelax(device::DeviceContext& context, const WeightRelaxLaunch& launch, device::KernelVariant variant) {
@@ -19,11 +21,11 @@ void launchWeightRelax(device::DeviceContext& context, const WeightRelaxLaunch& 
     // Colours by the parity of the grid's rows, so that a window's place does not change them.
     const int row = rows.free_begin + (rows.free_begin + step / 2) % 2;
     if (row >= rows.free_end || column >= space.columns) continue;
-    context.launch(kernel,
-                   device::WorkItems(space.lanes() / lanes, divideUp(space.columns - column, 2),
-                                     divideUp(rows.free_end - row, 2)),
-                   launch.system, launch.window.startBuffer(), launch.window.weightsBuffer(), column, row - rows.begin,
-                   space.columns, rows.count(), launch.smoothness, launch.trust);
+    context.launch(
+        kernel,
+        device::WorkItems(space.lanes() / lanes, divideUp(space.columns - column, 2), divideUp(rows.free_end - row, 2)),
+        launch.system, launch.window.startBuffer(), launch.window.weightsBuffer(), column, row - rows.begin,
+        space.columns, rows.count(), launch.smoothness, launch.trust);
   }
 }
 

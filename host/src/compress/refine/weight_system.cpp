@@ -7,11 +7,13 @@
 #include "compress/refine/half_cell_gather.hpp"
 #include "compress/refine/weight_relax.hpp"
 #include "compress/refine/weight_system_gather.hpp"
+#include "io/counts.hpp"
 
 namespace facezip::compress {
 
 std::size_t systemBytesOfTile(const WeightSpace& space, int weight_scale) {
-  return toSize(FACEZIP_CELLS_OF_16(weight_scale), FACEZIP_CELLS_OF_16(weight_scale)) * space.systemEntries() * sizeof(float);
+  return toSize(FACEZIP_CELLS_OF_16(weight_scale), FACEZIP_CELLS_OF_16(weight_scale)) * space.systemEntries() *
+         sizeof(float);
 }
 
 WeightSystem::WeightSystem(device::DeviceContext& context, const WeightSpace& space, device::KernelVariant variant)
@@ -62,8 +64,7 @@ void WeightSystem::gather(const GridBand& band, const cl::Buffer& tile_at, const
 void WeightSystem::gather(const HalfCells& halves, const WeightWindow& window) {
   reserve(window);
   launchHalfCellGather(
-      context_,
-      {.window = window, .rows = halves.rows(), .halves = halves.equations(), .system = system_.buffer()});
+      context_, {.window = window, .rows = halves.rows(), .halves = halves.equations(), .system = system_.buffer()});
   empty_ = false;
 }
 

@@ -40,7 +40,9 @@ class WeightSystem {
   /// smoothness, trust  above 0
   void relax(const WeightWindow& window, int sweeps, float smoothness, float trust);
 
-  /// [held rows][columns][entries], for tests; layout in kernels/cl/weight_system.cl.
+  /// [tile][patch of cells][entries], what sumTiles() left, for tests; layout in kernels/cl/weight_system.cl.
+  const cl::Buffer& tileSums() const { return partial_.buffer(); }
+  /// [held rows][columns][entries], for tests.
   const cl::Buffer& equations() const { return system_.buffer(); }
 
  private:

@@ -5,15 +5,16 @@
 #include <cassert>
 
 #include "compress/bands/difference.hpp"
+#include "io/counts.hpp"
 
 namespace facezip::compress {
 namespace {
 
 /// The table as the kernel reads it: K x N x C, with N rounded up to 2 by zeros (two expressions at a time).
 std::vector<float> kernelCoefficients(const TextureCoefficients& table) {
-  const auto textures = static_cast<std::size_t>(table.textures);
-  const auto expressions = static_cast<std::size_t>(table.expressions);
-  const auto masks = static_cast<std::size_t>(table.masks);
+  const auto textures = toSize(table.textures);
+  const auto expressions = toSize(table.expressions);
+  const auto masks = toSize(table.masks);
   const std::size_t padded = roundUp(expressions, 2);
   assert(table.values.size() == masks * textures * expressions);
   std::vector<float> result(masks * padded * textures, 0.0f);
@@ -41,8 +42,7 @@ DifferenceTextures::DifferenceTextures(device::DeviceContext& context, const Tex
 }
 
 std::size_t DifferenceTextures::textureBytes(const DeviceTiles& tiles, const BandShape& shape) const {
-  return tiles.tileCount() * static_cast<std::size_t>(textures_count_) * static_cast<std::size_t>(shape.channels) *
-         kTileTexels * sizeof(float);
+  return tiles.tileCount() * toSize(textures_count_, shape.channels) * kTileTexels * sizeof(float);
 }
 
 const cl::Buffer& DifferenceTextures::compute(const DeviceTiles& tiles, const cl::Buffer& differences,
@@ -57,10 +57,9 @@ const cl::Buffer& DifferenceTextures::compute(const DeviceTiles& tiles, const cl
       context_.kernel("difference_texture.cl", "difference_texture",
                       fmt::format("{} -D TEXTURES={} -D WIDTH={}", differenceDefines(shape), textures_count_, width));
   const std::size_t items = kTileTexels / width;
-  context_.launch(kernel,
-                  device::WorkItems(items, tiles.tileCount()).inGroupsOf(context_.workGroupSize(kernel, items), 1),
-                  tiles.maskBegin(), tiles.maskIndex(), tiles.maskWeights(), coefficients_, differences, textures_,
-                  expressions_);
+  context_.launch(
+      kernel, device::WorkItems(items, tiles.tileCount()).inGroupsOf(context_.workGroupSize(kernel, items), 1),
+      tiles.maskBegin(), tiles.maskIndex(), tiles.maskWeights(), coefficients_, differences, textures_, expressions_);
   return textures_.buffer();
 }
 

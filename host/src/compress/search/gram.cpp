@@ -7,6 +7,7 @@
 
 #include "cl/layout.h"
 #include "compress/bands/difference.hpp"
+#include "io/counts.hpp"
 
 namespace facezip::compress {
 namespace {
@@ -54,7 +55,7 @@ void GramAccumulator::add(const DeviceTiles& tiles, const cl::Buffer& difference
   if (tiles.tileCount() == 0) return;
   holdSums();
   device::requireBytes(context_, differences, differenceBufferBytes(shape, tiles.tileCount()), "differences of a band");
-  const std::size_t blocks = static_cast<std::size_t>(blockCount(sums_.expressions));
+  const std::size_t blocks = toSize(blockCount(sums_.expressions));
   const std::size_t most_rows = largest_partial_bytes_ / (kBlockBytes * std::min(blocks, kFewestBlocks));
   for (std::size_t tile = 0; tile < tiles.tileCount();) {
     const GramPlan plan = planGram(tiles, sums_.slots, pair_slots_, tile, most_rows);
@@ -87,16 +88,15 @@ cl::Event GramAccumulator::runBlocks(const DeviceTiles& tiles, const cl::Buffer&
   const cl::Kernel kernel =
       gpu ? context_.kernel("gram_gpu.cl", "gram_gpu", fmt::format("{} -D WGS={}", differenceDefines(shape), group))
           : context_.kernel("gram.cl", "gram", differenceDefines(shape));
-  const device::WorkItems items =
-      gpu ? device::WorkItems(toSize(group, block_count), plan.runs()).inGroupsOf(group, 1)
-          : device::WorkItems(plan.runs()).inGroupsOf(1);
+  const device::WorkItems items = gpu ? device::WorkItems(toSize(group, block_count), plan.runs()).inGroupsOf(group, 1)
+                                      : device::WorkItems(plan.runs()).inGroupsOf(1);
   return context_.launch(kernel, items, tiles.maskBegin(), tiles.maskWeights(), tiles.texelWeights(), differences,
                          run_begin_, run_rows_, slot_begin_, entries_, partial_, sums_.expressions, first_block,
                          block_count);
 }
 
 void GramAccumulator::addSums(const GramPlan& plan, int first_block, int block_count, double metric_weight) {
-  const std::size_t lanes = static_cast<std::size_t>(block_count) * kBlockLanes;
+  const std::size_t lanes = toSize(block_count) * kBlockLanes;
   const std::size_t bytes = plan.touched.size() * lanes * sizeof(cl_float2);
   reduced_.reserve(bytes);
   context_.launch(context_.kernel("gram_reduce.cl", "gram_reduce"),
@@ -105,19 +105,19 @@ void GramAccumulator::addSums(const GramPlan& plan, int first_block, int block_c
 
   const device::MappedBytes mapped = reduced_.mapForReading(bytes);
   const std::span<const cl_float2> sums = mapped.as<const cl_float2>();
-  const auto n_count = static_cast<std::size_t>(sums_.expressions);
+  const auto n_count = toSize(sums_.expressions);
   for (std::size_t i = 0; i < plan.touched.size(); ++i) {
-    double* matrix = sums_.values.data() + static_cast<std::size_t>(plan.touched[i]) * n_count * n_count;
+    double* matrix = sums_.values.data() + toSize(plan.touched[i]) * n_count * n_count;
     std::size_t row = 0;  // of blocks
-    while ((row + 1) * (row + 2) / 2 <= static_cast<std::size_t>(first_block)) ++row;
-    std::size_t column = static_cast<std::size_t>(first_block) - row * (row + 1) / 2;
+    while ((row + 1) * (row + 2) / 2 <= toSize(first_block)) ++row;
+    std::size_t column = toSize(first_block) - row * (row + 1) / 2;
     for (int b = 0; b < block_count; ++b) {
       for (std::size_t lane = 0; lane < kBlockLanes; ++lane) {
         const std::size_t n = column * kBlockSide + lane / kBlockSide;
         const std::size_t m = row * kBlockSide + lane % kBlockSide;
         // Blocks on the diagonal hold both halves, and the same bits in both.
         if (n > m || m >= n_count) continue;
-        const cl_float2 sum = sums[i * lanes + static_cast<std::size_t>(b) * kBlockLanes + lane];
+        const cl_float2 sum = sums[i * lanes + toSize(b) * kBlockLanes + lane];
         const double value = metric_weight * (static_cast<double>(sum.s[0]) + static_cast<double>(sum.s[1]));
         matrix[n * n_count + m] += value;
         if (n != m) matrix[m * n_count + n] += value;

@@ -6,6 +6,7 @@
 #include <cassert>
 
 #include "cl/layout.h"
+#include "io/counts.hpp"
 
 namespace facezip::compress {
 namespace {
@@ -18,10 +19,10 @@ int blocksOf(int expressions) { return divideUp(expressions, kLanes); }
 }  // namespace
 
 std::vector<int> packTextureOf(std::span<const int> texture_of, int masks, int expressions) {
-  assert(texture_of.size() == static_cast<std::size_t>(masks) * static_cast<std::size_t>(expressions));
-  const auto row = static_cast<std::size_t>(blocksOf(expressions) * kLanes);
-  std::vector<int> packed(static_cast<std::size_t>(masks) * row, -1);
-  for (std::size_t k = 0; k < static_cast<std::size_t>(masks); ++k) {
+  assert(texture_of.size() == toSize(masks, expressions));
+  const auto row = toSize(blocksOf(expressions) * kLanes);
+  std::vector<int> packed(toSize(masks) * row, -1);
+  for (std::size_t k = 0; k < toSize(masks); ++k) {
     std::copy_n(texture_of.begin() + static_cast<std::ptrdiff_t>(k) * expressions, expressions,
                 packed.begin() + static_cast<std::ptrdiff_t>(k * row));
   }
@@ -29,7 +30,8 @@ std::vector<int> packTextureOf(std::span<const int> texture_of, int masks, int e
 }
 
 cl::Event launchWeightMap(device::DeviceContext& context, const WeightMapLaunch& launch) {
-  const cl::Kernel kernel = context.kernel("weight_map.cl", "weight_map", fmt::format("-D CLUSTERS={}", launch.clusters));
+  const cl::Kernel kernel =
+      context.kernel("weight_map.cl", "weight_map", fmt::format("-D CLUSTERS={}", launch.clusters));
   const std::size_t local = context.workGroupSize(kernel, 16);
   const std::size_t columns = roundUp(divideUp(launch.cells, FACEZIP_WEIGHT_MAP_CELLS), local);
   return context.launch(kernel, device::WorkItems(columns, blocksOf(launch.expressions)).inGroupsOf(local, 1),
@@ -49,7 +51,7 @@ WeightMapper::WeightMapper(device::DeviceContext& context, std::span<const int> 
       weights_(context, "weight maps", CL_MEM_WRITE_ONLY) {}
 
 std::size_t WeightMapper::outputBytes(std::size_t cell_count) const {
-  return cell_count * static_cast<std::size_t>(expressions_) * static_cast<std::size_t>(clusters_);
+  return cell_count * toSize(expressions_, clusters_);
 }
 
 void WeightMapper::fill(const CellMasks& cells, std::size_t first_cell, std::size_t cell_count,
@@ -57,18 +59,18 @@ void WeightMapper::fill(const CellMasks& cells, std::size_t first_cell, std::siz
   assert(first_cell + cell_count <= cells.cells() && out.size() == outputBytes(cell_count));
   if (out.empty()) return;
   const std::span<const int> begins = std::span(cells.cell_begin).subspan(first_cell, cell_count + 1);
-  const auto first_entry = static_cast<std::size_t>(begins.front());
-  const std::size_t entries = static_cast<std::size_t>(begins.back()) - first_entry;
-  launchWeightMap(context_, {.cells = cell_count,
-                             .expressions = expressions_,
-                             .clusters = clusters_,
-                             .first_entry = begins.front(),
-                             .cell_begin = cell_begin_.upload(begins),
-                             .mask_index = mask_index_.upload(std::span(cells.mask_index).subspan(first_entry, entries)),
-                             .mask_weights =
-                                 mask_weights_.upload(std::span(cells.mask_weights).subspan(first_entry, entries)),
-                             .texture_of = texture_of_,
-                             .weights = weights_.reserve(out.size())});
+  const auto first_entry = toSize(begins.front());
+  const std::size_t entries = toSize(begins.back()) - first_entry;
+  launchWeightMap(context_,
+                  {.cells = cell_count,
+                   .expressions = expressions_,
+                   .clusters = clusters_,
+                   .first_entry = begins.front(),
+                   .cell_begin = cell_begin_.upload(begins),
+                   .mask_index = mask_index_.upload(std::span(cells.mask_index).subspan(first_entry, entries)),
+                   .mask_weights = mask_weights_.upload(std::span(cells.mask_weights).subspan(first_entry, entries)),
+                   .texture_of = texture_of_,
+                   .weights = weights_.reserve(out.size())});
   weights_.read(out);
 }
 
@@ -76,13 +78,13 @@ void WeightMapper::fillAll(const CellMasks& cells, std::span<std::uint8_t> out) 
   constexpr std::size_t kCellsAtOnce = std::size_t{1} << 15;
   const std::size_t count = cells.cells();
   assert(out.size() == outputBytes(count));
-  const auto channels = static_cast<std::size_t>(clusters_);
+  const auto channels = toSize(clusters_);
   std::vector<std::uint8_t> range;
   for (std::size_t first = 0; first < count; first += kCellsAtOnce) {
     const std::size_t in_range = std::min(kCellsAtOnce, count - first);
     range.resize(outputBytes(in_range));
     fill(cells, first, in_range, range);
-    for (std::size_t n = 0; n < static_cast<std::size_t>(expressions_); ++n) {
+    for (std::size_t n = 0; n < toSize(expressions_); ++n) {
       std::copy_n(range.data() + n * in_range * channels, in_range * channels,
                   out.data() + (n * count + first) * channels);
     }

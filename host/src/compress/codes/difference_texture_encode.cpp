@@ -1,9 +1,11 @@
-#include "compress/codes/texture_encoder.hpp"
+#include "compress/codes/difference_texture_encode.hpp"
 
 #include <fmt/format.h>
 
 #include <cassert>
 #include <cstring>
+
+#include "io/counts.hpp"
 
 namespace facezip::compress {
 namespace {
@@ -22,10 +24,9 @@ void TextureEncoder::clear(const BandShape& shape, int bits) {
 
 void TextureEncoder::encode(const DeviceTiles& tiles, const BandShape& shape, const cl::Buffer& textures,
                             std::span<const TextureEncoding> encoding, int bits, std::span<std::byte> codes) {
-  assert(encoding.size() == static_cast<std::size_t>(textures_count_) * static_cast<std::size_t>(shape.channels));
+  assert(encoding.size() == toSize(textures_count_, shape.channels));
   assert(bits == 8 || bits == 16);
-  assert(codes.size() == static_cast<std::size_t>(shape.rows) * static_cast<std::size_t>(shape.width) *
-                             encoding.size() * static_cast<std::size_t>(bits / 8));
+  assert(codes.size() == toSize(shape.rows, shape.width) * encoding.size() * toSize(bits / 8));
   std::vector<cl_float2> factors;
   for (const TextureEncoding& e : encoding) factors.push_back({{e.scale > 0.0f ? 1.0f / e.scale : 0.0f, e.offset}});
   encoding_.upload(factors);

@@ -1,4 +1,4 @@
-// texture_encoder.hpp - difference textures as integer codes in rows, as a package's images hold them.
+// difference_texture_encode.hpp - difference textures as integer codes in rows, as a package's images hold them.
 #pragma once
 
 #include <cstddef>

@@ -1,15 +1,17 @@
-#include "compress/codes/texture_range.hpp"
+#include "compress/codes/difference_texture_range.hpp"
 
 #include <algorithm>
 #include <functional>
 #include <limits>
+
+#include "io/counts.hpp"
 
 namespace facezip::compress {
 
 std::vector<TextureRange> TextureRangeFinder::findPerTile(const DeviceTiles& tiles, const BandShape& shape,
                                                           const cl::Buffer& textures, std::size_t first,
                                                           std::size_t end) {
-  const std::size_t planes = static_cast<std::size_t>(textures_count_) * static_cast<std::size_t>(shape.channels);
+  const std::size_t planes = toSize(textures_count_, shape.channels);
   std::vector<TextureRange> result;
   if (first == end) return result;
   device::requireBytes(context_, textures, tiles.tileCount() * planes * kTileTexels * sizeof(float),
@@ -27,7 +29,7 @@ std::vector<TextureRange> TextureRangeFinder::findPerTile(const DeviceTiles& til
 
 std::vector<TextureRange> TextureRangeFinder::find(const DeviceTiles& tiles, const BandShape& shape,
                                                    const cl::Buffer& textures, std::size_t first, std::size_t end) {
-  const std::size_t planes = static_cast<std::size_t>(textures_count_) * static_cast<std::size_t>(shape.channels);
+  const std::size_t planes = toSize(textures_count_, shape.channels);
   return clippedRange(findPerTile(tiles, shape, textures, first, end), planes, 0.0);
 }
 

@@ -1,4 +1,4 @@
-// texture_range.hpp - how far difference textures reach, which their encoding must hold.
+// difference_texture_range.hpp - how far difference textures reach, which their encoding must hold.
 #pragma once
 
 #include <span>

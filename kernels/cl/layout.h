@@ -31,4 +31,7 @@
 // Of a half cell: one matrix (half_cell_fit.cl), padded, before the right-hand sides.
 #define FACEZIP_HALF_CELL_MATRIX(textures) FACEZIP_PADDED(FACEZIP_PAIRS(textures))
 
+// Numbers of a texel's factored system of difference textures (difference_factors.h).
+#define FACEZIP_FACTOR_PLANES(textures, channels) (FACEZIP_PAIRS(textures) + (textures) * (channels) + 1)
+
 #endif

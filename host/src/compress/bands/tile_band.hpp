@@ -23,6 +23,7 @@ struct BandShape {
   int channels = 0;     ///< 1 to 4
   int expressions = 0;  ///< N, without the neutral
   image::SampleType sample_type = image::SampleType::kUint8;
+  bool neutral_decoded = false;  ///< differences are to what a coded neutral decodes to, which lies between samples
 
   /// Bytes of the raw samples: neutral first, then the expressions, each `rows` rows.
   std::size_t sampleBytes() const {
@@ -30,8 +31,10 @@ struct BandShape {
   }
   int tileColumns() const { return tilesAlong(width); }
   int tileRows() const { return tilesAlong(rows); }
-  /// Differences of 8-bit samples are exact in 16-bit integers; all others are floats. Both in units of 1/255.
-  std::size_t differenceBytes() const { return sample_type == image::SampleType::kUint8 ? 2 : 4; }
+  /// Differences between 8-bit samples are exact in 16-bit integers; all others are floats. Both in units of 1/255.
+  std::size_t differenceBytes() const { return sample_type == image::SampleType::kUint8 && !neutral_decoded ? 2 : 4; }
+  /// Bytes of a decoded neutral.
+  std::size_t neutralBytes() const { return toSize(rows, width, channels) * sizeof(float); }
 };
 
 }  // namespace facezip::compress

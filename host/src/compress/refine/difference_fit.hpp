@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "compress/codes/texture_encoding.hpp"
@@ -20,6 +21,9 @@ struct FitError {
   double weighted = 0.0;  ///< over the covered texels, each times its texel weight
   double plain = 0.0;     ///< each counted once
 };
+
+/// Numbers of a texel's factored system.
+int differenceFactorPlanes(const WeightSpace& space, int channels);
 
 class DifferenceFit {
  public:
@@ -37,19 +41,24 @@ class DifferenceFit {
   const cl::Buffer& computeRounded(const GridBand& band, const WeightWindow& window, float ridge,
                                    std::span<const TextureEncoding> encoding, int bits);
 
+  /// The systems of the band's texels, factored and not solved, for textures that are coded one after the other
+  /// (kernels/cl/difference_factors.h): [tile][differenceFactorPlanes()][256] float. Does not wait.
+  const cl::Buffer& computeFactors(const GridBand& band, const WeightWindow& window, float ridge);
+
   const cl::Buffer& textures() const { return textures_.buffer(); }
 
   /// What the last compute() leaves in every tile. Waits.
   std::vector<FitError> errors();
 
  private:
-  const cl::Buffer& run(const GridBand& band, const WeightWindow& window, float ridge, int largest_code);
+  const cl::Buffer& run(const GridBand& band, const WeightWindow& window, float ridge, const std::string& form);
 
   device::DeviceContext& context_;
   WeightSpace space_;
   bool gpu_;
   std::size_t tile_count_ = 0;
   device::PooledBuffer textures_;
+  device::PooledBuffer factors_;
   device::PooledBuffer errors_;
   device::PooledBuffer encoding_;
 };

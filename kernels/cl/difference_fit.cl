@@ -3,7 +3,7 @@
 // A C x C system per texel, by Cholesky. With CODES the textures are rounded to their encoding while the system is
 // substituted back (Babai's nearest plane): a channel that is solved for after another makes up for that one's rounding.
 //
-// NDRange  global {256 / (LANES * ROWS), tiles}, local any
+// NDRange  global {256 / (LANES * ROWS), tiles}, local {256 / (LANES * ROWS), 1}
 // Buffers  tiles          in   [tile] int2        column and row of tiles in the band
 //          texel_weights  in   [tile][256] float  weight of a texel in every sum, 0 outside the covered texels
 //          active         in   [tile][256] float  above 0 where D is wanted (gutter too); elsewhere D becomes 0

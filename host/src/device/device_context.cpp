@@ -65,7 +65,8 @@ cl::Program DeviceContext::buildProgram(std::string_view file_name, const std::s
   if (progress_ != nullptr) progress_->busy(fmt::format("compiling kernels ({})", file_name));
   cl::Program program(context_, source);
   program.build({device_}, options.c_str());
-  cache_.store(key, binaryOf(program));
+  // Asked for alone where it is kept: for its binary PoCL compiles every kernel once more, for groups of any size.
+  if (cache_.keeps()) cache_.store(key, binaryOf(program));
   return program;
 }
 
@@ -102,6 +103,12 @@ std::size_t DeviceContext::workGroupSize(const cl::Kernel& kernel, std::size_t w
   const std::size_t allowed =
       std::min(info_.largest_work_group, kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device_));
   return std::bit_floor(std::max<std::size_t>(1, std::min(wanted, allowed)));
+}
+
+std::size_t DeviceContext::groupOf(const cl::Kernel& kernel, std::size_t count) const {
+  std::size_t group = std::min(count, workGroupSize(kernel, 256));
+  while (count % group != 0) --group;
+  return group;
 }
 
 cl::Buffer DeviceContext::allocate(std::size_t bytes, cl_mem_flags flags, std::string_view what) const {

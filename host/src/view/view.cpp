@@ -29,6 +29,15 @@ const std::map<std::string_view, std::string_view>& viewerPage() { return view::
 
 std::vector<std::string> packageFiles(const Package& package) { return package::filesOf(package.description()); }
 
+std::vector<OpenPackageFile> openPackageFiles(const Package& package) {
+  std::vector<OpenPackageFile> files;
+  for (std::string& name : packageFiles(package)) {
+    InputFile file(package.directory() / name, "a file of the package");
+    files.push_back({std::move(name), std::move(file)});
+  }
+  return files;
+}
+
 void writeViewer(const Package& package, const fs::path& output, Progress& progress) {
   checkTexels(package, progress);
   io::StagedDirectory staged(output, {"viewer.js", "facezip"});

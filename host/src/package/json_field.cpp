@@ -82,6 +82,17 @@ std::string JsonField::got() const {
   return value_.is_string() ? quoted(value_.get<std::string>()) : value_.dump();
 }
 
+namespace {
+
+/// The parser's words, without the middle of what it quotes from the file, which may be all of it.
+std::string shortened(const std::string& words) {
+  constexpr std::size_t kLongest = 240;
+  if (words.size() <= kLongest) return words;
+  return words.substr(0, kLongest / 2) + " ... " + words.substr(words.size() - kLongest / 2);
+}
+
+}  // namespace
+
 std::string quoted(const std::string& text) {
   constexpr std::size_t kLongest = 80;
   std::string shown;
@@ -95,16 +106,24 @@ std::string quoted(const std::string& text) {
 
 json parseJson(const std::string& text, const std::string& file, const std::string& cure) {
   constexpr int kDeepest = 64;
-  const auto limitDepth = [&](int depth, json::parse_event_t, json&) {
+  constexpr std::size_t kMostValues = std::size_t{1} << 21;
+  std::size_t values = 0;
+  const auto keepLimits = [&](int depth, json::parse_event_t event, json&) {
     if (depth > kDeepest) throw InputError({file, "", fmt::format("at most {} nested levels", kDeepest), "more", cure});
+    // A text of "[[],[],..." takes forty times its size.
+    const bool begins = event == json::parse_event_t::value || event == json::parse_event_t::array_start ||
+                        event == json::parse_event_t::object_start;
+    if (begins && ++values > kMostValues) {
+      throw InputError({file, "", fmt::format("at most {} values", kMostValues), "more", cure});
+    }
     return true;
   };
   try {
-    return json::parse(text, limitDepth);
+    return json::parse(text, keepLimits);
   } catch (const json::parse_error& error) {
-    throw InputError({file, fmt::format("byte {}", error.byte), "JSON", error.what(), cure});
+    throw InputError({file, fmt::format("byte {}", error.byte), "JSON", shortened(error.what()), cure});
   } catch (const json::out_of_range& error) {  // 1e999
-    throw InputError({file, "", "numbers up to 1.8e308", error.what(), cure});
+    throw InputError({file, "", "numbers up to 1.8e308", shortened(error.what()), cure});
   }
 }
 

@@ -105,6 +105,7 @@ class Rigging {
     }
     progress_.stage("reading the template", 0);
     template_ = readTemplate(template_directory_);
+    requireRigSize(template_.names.size(), capture_.expressions.size(), template_directory_.string());
     subject_ = readSubject(capture_, options_, progress_);
     requireSkin(template_, subject_.neutral, capture_.neutral_mesh.string());
     problem_.neutral = subject_.neutral.positions;

@@ -109,7 +109,7 @@ std::vector<std::string> exportPackage(const Package& package, const std::string
   } else {
     copyPackage(package, staged.path() / "package", progress);
   }
-  exporting::addBlendToGltf(package.directory() / description.mesh_file, staged.path() / "scene.gltf",
+  exporting::addBlendToGltf(mesh::readPackageMesh(package), staged.path() / "scene.gltf",
                             plainMaterial(package, chosen.textures));
   for (const std::string& file : chosen.files) {
     const std::string name = file.ends_with(".md") ? "README.md" : file;

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "io/read_file.hpp"
+#include "mesh/package_mesh.hpp"
 #include "package/guides.hpp"
 #include "package/package_files.hpp"
 #include "package/weight_atlas.hpp"
@@ -47,6 +49,10 @@ void readAll(const fs::path& file, const image::ImageShape& shape, const Progres
 }  // namespace
 
 void checkTexels(const Package& package, Progress& progress) {
+  if (!package.description().mesh_file.empty()) {
+    progress.stage("reading the mesh", 0);
+    mesh::readPackageMesh(package);
+  }
   const auto images = imagesOf(package.description());
   progress.stage("reading textures", 0);
   tbb::parallel_for(std::size_t{0}, images.size(),

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <map>
 
-#include "method_titles.hpp"
 #include "option_types.hpp"
 
 namespace facezip::cli {
@@ -22,7 +21,7 @@ void printSeconds(const std::vector<std::pair<std::string, double>>& seconds) {
 /// Methods that have a column of their own: the package's own method is the package.
 std::vector<std::string> columnsOf(const Evaluation& evaluation, const Evaluation::Map& map) {
   std::vector<std::string> columns;
-  for (const auto& [key, title] : methodTitles()) {
+  for (const auto& [key, title] : evaluationTitles()) {
     if (map.rmse.contains(key) && key != evaluation.method) columns.push_back(key);
   }
   return columns;
@@ -32,7 +31,7 @@ void printErrors(const Evaluation& evaluation, const Evaluation::Map& map) {
   fmt::print("\n{}: RMSE over the covered texels, 0..255 (difference to the neutral: {:.3f})\n{:<34}", map.name,
              map.rms_difference, "expression");
   const std::vector<std::string> columns = columnsOf(evaluation, map);
-  for (const std::string& key : columns) fmt::print("{:>14}", methodTitle(key));
+  for (const std::string& key : columns) fmt::print("{:>14}", evaluationTitle(key));
   for (std::size_t n = 0; n < evaluation.expressions.size(); ++n) {
     fmt::print("\n{:<34}", evaluation.expressions[n]);
     for (const std::string& key : columns) {
@@ -57,7 +56,7 @@ void printDetail(const Evaluation& evaluation, const Evaluation::Map& map) {
   }
   for (const std::string& key : columnsOf(evaluation, map)) {
     const auto found = map.detail.find(key);
-    if (found != map.detail.end()) printTexelErrors("all, " + methodTitle(key), found->second.pooled);
+    if (found != map.detail.end()) printTexelErrors("all, " + evaluationTitle(key), found->second.pooled);
   }
 }
 
@@ -68,7 +67,7 @@ void printAngles(const Evaluation& evaluation, const Evaluation::Map& map) {
     const auto found = map.angles.find(key);
     if (found == map.angles.end()) continue;
     const NormalAngles& angles = found->second.pooled;
-    fmt::print("{:<34}{:>14.3f}{:>14.2f}{:>14.2f}\n", methodTitle(key), angles.mean, angles.p99, angles.max);
+    fmt::print("{:<34}{:>14.3f}{:>14.2f}{:>14.2f}\n", evaluationTitle(key), angles.mean, angles.p99, angles.max);
   }
 }
 
@@ -79,7 +78,7 @@ void printBlends(const Evaluation& evaluation, const Evaluation::Map& map) {
   for (const std::string& key : columnsOf(evaluation, map)) {
     const auto found = map.blends.find(key);
     if (found == map.blends.end()) continue;
-    fmt::print("{:<34}{:>14.3f}{:>12.0f} %\n", methodTitle(key), found->second.rmse,
+    fmt::print("{:<34}{:>14.3f}{:>12.0f} %\n", evaluationTitle(key), found->second.rmse,
                100.0 * found->second.largest_share_of_bound);
   }
 }
@@ -93,7 +92,7 @@ void printAblation(const std::string& title, const std::map<std::string, std::ma
   if (values.empty()) return;
   fmt::print("\n{:<34}", title);
   for (const int differences : kAblatedDifferences) fmt::print("{:>14}", fmt::format("C = {}", differences));
-  for (const auto& [key, name] : methodTitles()) {
+  for (const auto& [key, name] : evaluationTitles()) {
     const auto row = values.find(key);
     if (row == values.end()) continue;
     fmt::print("\n{:<34}", name);
@@ -106,13 +105,13 @@ void printAblation(const std::string& title, const std::map<std::string, std::ma
 }
 
 void printBytes(const Evaluation& evaluation) {
-  static const std::vector<std::pair<std::string, std::string>> rows = {
-      {"package", "package"},  {"weights_per_map", "own weights"},        {"pca4", "PCA(4)"}, {"pca8", "PCA(8)"},
-      {"raw", "all textures"}, {"package_disk", "package, files on disk"}};
+  std::vector<std::pair<std::string, std::string>> rows = evaluationTitles();
+  rows.insert(rows.end(), {{"raw", "all textures"}, {"package_disk", "package, files on disk"}});
   fmt::print("\n{:<34}{:>14}\n", "run-time memory", "");
   for (const auto& [key, title] : rows) {
     const auto found = evaluation.bytes.find(key);
-    if (found != evaluation.bytes.end()) fmt::print("{:<34}{:>14}\n", title, formatMegabytes(found->second));
+    if (found == evaluation.bytes.end() || key == evaluation.method) continue;
+    fmt::print("{:<34}{:>14}\n", title, formatMegabytes(found->second));
   }
 }
 
@@ -170,7 +169,7 @@ void printCompressReport(const CompressReport& report) {
 }
 
 void printEvaluation(const Evaluation& evaluation) {
-  fmt::print("package: {} method, C = {}\n", methodTitle(evaluation.method), evaluation.differences);
+  fmt::print("package: {} method, C = {}\n", evaluationTitle(evaluation.method), evaluation.differences);
   for (const Evaluation::Map& map : evaluation.maps) {
     printErrors(evaluation, map);
     printDetail(evaluation, map);

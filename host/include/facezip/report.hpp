@@ -16,8 +16,8 @@ std::string toJson(const Evaluation& evaluation);
 std::string toJson(const RigReport& report);
 std::string toJson(const SolvedClip& clip);
 
-/// Throws OutputError if a report could not be written to `file`, as far as can be told: to be asked before the work that
-/// it is to tell of. Nothing for an empty name.
+/// Throws OutputError if a report could not be written to `file`, as far as can be told: to be asked before the work
+/// that it is to tell of. Nothing for an empty name.
 void requireReportPlace(const std::filesystem::path& file);
 
 /// Writes a report so that a reader sees all of it or none; makes the directories above it. Throws OutputError.

@@ -20,8 +20,8 @@ constexpr std::uint64_t kUsefulWindowBytes = 192 * kMiB;
 constexpr int kTypicalMasksPerTile = 16;
 
 /// What a window of the refinement keeps of one map, per row of its image.
-BandCost windowCost(const OpenMap& map, const WeightSpace& space) {
-  const BandShape shape = bandShape(*map.samples, 0);
+BandCost windowCost(const GridMap& map, const WeightSpace& space) {
+  const BandShape shape = bandShape(*map.map->samples, 0);
   const auto tiles = static_cast<std::uint64_t>((shape.width + kTileSide - 1) / kTileSide);
   const std::uint64_t samples = tiles * kTileSide * static_cast<std::uint64_t>(shape.channels) *
                                 (static_cast<std::uint64_t>(shape.expressions) + 1) *
@@ -86,18 +86,15 @@ int planBandRows(const BandCost& cost, int height, std::uint64_t memory_bytes, s
   return static_cast<int>(std::clamp<std::uint64_t>(rows / step * step, step, needed));
 }
 
-int planWindowRows(std::span<OpenMap* const> maps, const WeightSpace& space, bool half_cells,
-                   std::uint64_t memory_bytes, std::uint64_t resident_bytes, const DeviceInfo& device) {
+int planWindowRows(std::span<const GridMap> maps, const WeightSpace& space, bool half_cells, std::uint64_t memory_bytes,
+                   std::uint64_t resident_bytes, const DeviceInfo& device) {
   BandCost cost;  // per row of the finest map
   cost.useful_bytes = kUsefulWindowBytes;
-  const OpenMap* finest = maps.front();
-  for (const OpenMap* map : maps) {
-    if (map->weight_scale > finest->weight_scale) finest = map;
-  }
-  const auto finest_scale = static_cast<std::uint64_t>(finest->weight_scale);
-  for (const OpenMap* map : maps) {
-    const BandCost one = windowCost(*map, space);
-    const auto scale = static_cast<std::uint64_t>(map->weight_scale);
+  const GridMap& finest = *std::ranges::max_element(maps, {}, &GridMap::weight_scale);
+  const auto finest_scale = static_cast<std::uint64_t>(finest.weight_scale);
+  for (const GridMap& map : maps) {
+    const BandCost one = windowCost(map, space);
+    const auto scale = static_cast<std::uint64_t>(map.weight_scale);
     cost.per_row += one.per_row * scale / finest_scale;
     cost.largest_buffer_per_row =
         std::max(cost.largest_buffer_per_row, one.largest_buffer_per_row * scale / finest_scale);
@@ -108,10 +105,10 @@ int planWindowRows(std::span<OpenMap* const> maps, const WeightSpace& space, boo
     cost.largest_buffer_per_row = std::max(cost.largest_buffer_per_row, bytes);
   }
   // Windows begin at whole tiles of every map and whole cells: 1008 rows for a scale of 63, where 64 has 64.
-  cost.row_step = windowRowStep(maps) * finest->weight_scale;
-  cost.rows_beside = 2 * windowHalo(finest->weight_scale);
-  return planBandRows(cost, finest->samples->shape().height, memory_bytes, resident_bytes, device) /
-         finest->weight_scale;
+  cost.row_step = windowRowStep(maps) * finest.weight_scale;
+  cost.rows_beside = 2 * windowHalo(finest.weight_scale);
+  return planBandRows(cost, finest.map->samples->shape().height, memory_bytes, resident_bytes, device) /
+         finest.weight_scale;
 }
 
 }  // namespace facezip::compress

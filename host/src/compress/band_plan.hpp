@@ -36,7 +36,7 @@ int planBandRows(const BandCost& cost, int height, std::uint64_t memory_bytes, s
 /// Rows of cells that a window of the refinement frees: a multiple of windowRowStep(maps), so that the windows of all
 /// maps together stay within the memory. Arguments and errors as planBandRows() has them.
 /// half_cells  whether the sweeps are made on half cells
-int planWindowRows(std::span<OpenMap* const> maps, const WeightSpace& space, bool half_cells,
-                   std::uint64_t memory_bytes, std::uint64_t resident_bytes, const DeviceInfo& device);
+int planWindowRows(std::span<const GridMap> maps, const WeightSpace& space, bool half_cells, std::uint64_t memory_bytes,
+                   std::uint64_t resident_bytes, const DeviceInfo& device);
 
 }  // namespace facezip::compress

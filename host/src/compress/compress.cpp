@@ -1,29 +1,26 @@
-// compress.cpp - the FaceZip method from end to end. Each stage is a step of its own file; this one puts them in order.
+// compress.cpp - the FaceZip method from end to end. Each stage is a function of its own file; this one hands what one
+// returns to the next.
 #include "facezip/compress.hpp"
 
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include <algorithm>
-#include <map>
-#include <thread>
+#include <optional>
 
+#include "compress/attempt.hpp"
 #include "compress/compress_options.hpp"
-#include "compress/compression_state.hpp"
-#include "compress/fit_stage.hpp"
-#include "compress/gram_stage.hpp"
-#include "compress/open_stage.hpp"
-#include "compress/rate_stage.hpp"
-#include "compress/refine/refinement.hpp"
-#include "compress/search_stage.hpp"
-#include "compress/write_stage.hpp"
+#include "compress/compress_report.hpp"
+#include "compress/compress_stretch.hpp"
+#include "compress/face_guides.hpp"
+#include "compress/open_textures.hpp"
+#include "compress/rate/rate_search.hpp"
+#include "io/staged_directory.hpp"
+#include "package/footprint.hpp"
 
 namespace facezip {
 namespace {
 using namespace compress;
 namespace fs = std::filesystem;
-
-using Method = CompressOptions::Method;
 
 std::uint64_t peakMemoryBytes() {
   rusage usage{};
@@ -39,80 +36,52 @@ std::uint64_t diskBytes(const fs::path& directory) {
   return bytes;
 }
 
-/// The weight grid: masks at its cells.
-void layGrid(CompressionState& state) {
-  if (state.rates) chooseRate(state);
-  state.progress.stage("weight grid", 0);
-  state.grid = raster::makeWeightGrid(*state.texel_masks, *state.maps.maps[state.maps.reference].raster,
-                                      state.options.weight_scale);
-  state.guides = makeMaskGuides(state.face, state.masks, state.grid);  // while the grid has its masks
-  state.clock.book("weight grid");
-  if (state.expressions() <= state.options.differences) {
-    state.progress.note(fmt::format("{} expression{}: each gets a difference texture of its own", state.expressions(),
-                                    state.expressions() == 1 ? "" : "s"));
+PackageForm formOf(const RatePoint& point) { return {point.differences, point.weight_scale, point.code_bits}; }
+
+PackageForm formOf(const CompressOptions& options) {
+  const bool stretches = options.method == Method::kCompressStretch;
+  return {stretches ? kCompressStretchMaps : options.differences, options.weight_scale, std::nullopt};
+}
+
+std::optional<RateSearch> searchRates(const CompressOptions& options, const MapSet& maps, std::size_t weight_sets) {
+  if (!options.target_rmse && !options.budget_bytes) return std::nullopt;
+  return std::optional<RateSearch>(std::in_place, options, maps, static_cast<int>(weight_sets));
+}
+
+/// Too little memory is to be said before the work, not in its middle, and the refinement's windows need most.
+void requireMemory(const CompressOptions& options, const MemoryPlan& memory, const PackageForm& form,
+                   const std::vector<std::vector<GridMap>>& groups) {
+  const auto method = options.method;
+  if (method != Method::kRefined && method != Method::kClosedLoop) return;
+  for (const std::vector<GridMap>& group : groups) memory.windowRows(form, group);
+}
+
+/// A change that the sample of a map's texels missed altogether leaves nothing to estimate by: all of them are shown.
+void lookAgain(RateEstimate& estimate, const MapSet& maps, int band_rows, const Run& run) {
+  BandBuffers buffers(run.context);
+  for (std::size_t m = 0; m < maps.maps.size(); ++m) {
+    if (!estimate.sawNothing(m)) continue;
+    estimate.startOver(m);
+    const OpenMap& map = maps.maps[m];
+    const auto make_tiles = [&](int begin, int end) { return raster::coverageTiles(*map.raster, begin, end); };
+    forEachMapBand(*map.samples, band_rows, buffers, make_tiles, fmt::format("estimating: {}", map.source->name),
+                   run.progress, [&](const MapBand& band) { estimate.addBand(m, band); });
   }
 }
 
-/// Writes refined weights, but where rounding made those of a group worse than the paper's with textures that suit
-/// them it keeps the paper's: that can only be where they are exact or nearly so.
-void refineAndWrite(CompressionState& state) {
-  // As many textures as expressions: the start is exact already.
-  const int sweeps = state.expressions() <= state.options.differences ? 0 : RefinementOptions{}.most_sweeps;
-  state.report.refinement_errors.clear();
-  for (WeightGroup& group : state.groups) fitWeights(state, group, sweeps);
-  const std::vector<double> refined_errors = writeGroups(state);
-  constexpr double kSuspicious = 0.5;          // of the start's error; refinement commonly leaves a third
-  std::map<std::size_t, WeightGroup> refined;  // that may be worse than the start
-  for (std::size_t g = 0; sweeps > 0 && g < state.groups.size(); ++g) {
-    if (refined_errors[g] > kSuspicious * state.groups[g].start_error) refined[g] = state.groups[g];
+/// Packages of the forms that a target asks for, one after the other, until one meets it; of the one form where there
+/// is no target.
+Attempt makePackages(const CompressionJob& job, RateSearch* rates, io::StagedDirectory& staged) {
+  if (rates == nullptr) return makePackage(job, formOf(job.options), staged.path());
+  while (true) {
+    const RatePoint point = rates->choose([&job](const RatePoint& p) { return fitsMemory(job, formOf(p)); });
+    Attempt attempt = makePackage(job, formOf(point), staged.path());
+    const double reached = pooledRmse(job, attempt);
+    if (!rates->misses(reached)) return attempt;
+    job.run.progress.note(fmt::format("{} differences with weights at 1/{} reach {:.3f}, not {:.3f}: trying more",
+                                      point.differences, point.weight_scale, reached, *job.options.target_rmse));
+    staged.clear();  // the next may have fewer textures
   }
-  if (refined.empty()) return;
-  for (const auto& [g, group] : refined) fitWeights(state, state.groups[g], 0);
-  const std::vector<double> start_errors = writeGroups(state);
-  std::erase_if(refined, [&](const auto& entry) { return start_errors[entry.first] <= refined_errors[entry.first]; });
-  for (auto& [g, group] : refined) state.groups[g] = std::move(group);
-  if (refined.empty()) {
-    state.progress.note("the paper's weights are exact here: they are kept");
-  } else {
-    writeGroups(state);
-  }
-}
-
-void solveAndWrite(CompressionState& state) {
-  switch (state.options.method) {
-    case Method::kPaper:
-    case Method::kNoPermutation:
-    case Method::kCompressStretch:
-      for (WeightGroup& group : state.groups) keepWeights(state, group);
-      writeGroups(state);
-      return;
-    case Method::kClosedLoop:
-      for (WeightGroup& group : state.groups) fitWeights(state, group, 0);
-      writeGroups(state);
-      return;
-    case Method::kRefined:
-      refineAndWrite(state);
-      return;
-  }
-}
-
-/// What is left when the textures are written: the mesh, the package's place, the report.
-void publish(CompressionState& state) {
-  state.report.differences = state.options.differences;
-  state.report.weight_scale = state.options.weight_scale;
-  if (state.options.mesh) {
-    writeFaceMesh(state.capture, state.face, state.masks.unit, state.expression_meshes, state.staged.path());
-    state.clock.book("mesh");
-  }
-  state.report.package_disk_bytes = diskBytes(state.staged.path());
-  state.staged.commit();
-  state.clock.book("publishing");
-  for (const OpenMap& map : state.maps.maps) {
-    state.report.wait_seconds += map.samples->waitSeconds();
-    state.report.decode_seconds += map.samples->decodeSeconds();
-  }
-  state.report.seconds = state.clock.seconds();
-  state.report.peak_memory_bytes = peakMemoryBytes();
 }
 
 }  // namespace
@@ -125,20 +94,46 @@ double CompressReport::permutationGap() const {
 CompressReport compressCapture(const Capture& capture, const fs::path& package, const CompressOptions& options,
                                const Device& device, Progress& progress) {
   requireSaneOptions(options);
-  CompressionState state(capture, package, options, device.context(), progress);
-  state.report.device = device.info().name;
-  const std::jthread decoder = openTextures(state);  // reads the state: the first to go
-  readGeometry(state);
-  planBands(state);
-  accumulateGrams(state);
-  do {
-    layGrid(state);
-    for (WeightGroup& group : state.groups) searchWeights(state, group);
-    state.grid.cells = {};  // weights took their place
-    solveAndWrite(state);
-  } while (missesTarget(state));
-  publish(state);
-  return state.report;
+  StageClock clock;
+  const Run run{device.context(), progress, clock, options.memory_bytes};
+  io::StagedDirectory staged(package, package::footprint());
+  OpenTextures textures = openTextures(capture, staged.path(), run);
+  MapSet& maps = textures.maps;
+  const FaceModel model = readFaceModel(capture, options, run);
+  const raster::TexelMasks masks(model.face.mesh, model.masks.region, model.masks.masks);
+  const GramSlots slots{masks.maskCount(), masks.overlappingPairs()};
+  clock.book("masks");
+
+  layOutMaps(maps, model.face.mesh, model.face.region, options.gutter);
+  const std::size_t weight_sets = options.weights_per_map ? maps.maps.size() : 1;
+  std::optional<RateSearch> rates = searchRates(options, maps, weight_sets);
+  const PackageForm first_form = rates ? formOf(rates->smallest()) : formOf(options);
+  const auto groups = groupMaps(maps, options.weights_per_map, first_form.weight_scale);
+  const MemoryPlan memory(maps, slots, static_cast<int>(weight_sets), run);
+  requireMemory(options, memory, first_form, groups);
+  const int band_rows = memory.bandRows(first_form);
+  clock.book("weight grid");
+
+  const auto observe = [&rates](std::size_t m, const MapBand& band) {
+    if (rates) rates->estimate().addBand(m, band);
+  };
+  const GramStage grams = accumulateGrams(groups, masks, slots, model.importance, band_rows, observe, run);
+  if (rates) lookAgain(rates->estimate(), maps, band_rows, run);
+
+  const CompressionJob job{capture, options, maps, model, masks, grams, memory, run};
+  RateSearch* const search = rates ? &*rates : nullptr;
+  const Attempt attempt = makePackages(job, search, staged);
+  if (options.mesh) {
+    writeFaceMesh(capture, model.face, model.masks.unit, model.expression_meshes, staged.path());
+    clock.book("mesh");
+  }
+  CompressReport report = makeReport(job, textures, slots, search, attempt);
+  report.package_disk_bytes = diskBytes(staged.path());
+  staged.commit();
+  clock.book("publishing");
+  report.seconds = clock.seconds();
+  report.peak_memory_bytes = peakMemoryBytes();
+  return report;
 }
 
 }  // namespace facezip

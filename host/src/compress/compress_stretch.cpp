@@ -69,7 +69,7 @@ TileMasks CompressStretchTextures::tiles(const OpenMap& map, int begin, int end)
   return raster::activeTiles(*map.classes, begin, end);
 }
 
-const cl::Buffer& CompressStretchTextures::compute(const OpenMap& map, const MapBand& band) {
+const cl::Buffer& CompressStretchTextures::compute(const GridMap& map, const MapBand& band) {
   const WeightSpace& space = window_.space();
   const WindowRows rows = cellRowsOf(band.begin, band.end, map.weight_scale, space.rows);
   std::vector<float> weights(static_cast<std::size_t>(rows.count()) * space.rowFloats());

@@ -37,7 +37,7 @@ class CompressStretchTextures : public TextureSource {
   CompressStretchTextures(device::DeviceContext& context, const WeightSpace& space, const EncodedWeights& influences,
                           device::KernelVariant variant = device::KernelVariant::kAuto);
   TileMasks tiles(const OpenMap& map, int begin, int end) const override;
-  const cl::Buffer& compute(const OpenMap& map, const MapBand& band) override;
+  const cl::Buffer& compute(const GridMap& map, const MapBand& band) override;
 
  private:
   const EncodedWeights& influences_;

@@ -1,9 +1,10 @@
 #include "compress/fit_stage.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "compress/codes/texture_range.hpp"
-#include "compress/compress_stretch.hpp"
 #include "compress/refine/refinement.hpp"
 
 namespace facezip::compress {
@@ -13,56 +14,50 @@ namespace {
 constexpr double kClippedWeights = 2e-4;
 
 /// Mean energy of an expression's differences on a covered cell: what smoothness and trust are measured by.
-double cellEnergy(const CompressionState& state, const WeightGroup& group) {
-  const double energy = group.grams.slot(group.grams.slots.whole()).trace() / state.expressions();
-  const auto cells = static_cast<double>(std::count(state.grid.covered.begin(), state.grid.covered.end(), 1));
+double cellEnergy(const FitProblem& problem) {
+  const double energy = problem.energy / problem.space.expressions;
+  const auto cells = static_cast<double>(std::ranges::count(problem.covered, 1));
   return energy > 0.0 ? energy / std::max(cells, 1.0) : 1.0;
 }
 
 }  // namespace
 
-std::unique_ptr<TextureSource> directTextures(CompressionState& state, const WeightGroup& group) {
-  if (state.options.method == CompressOptions::Method::kCompressStretch) {
-    return std::make_unique<CompressStretchTextures>(state.context, state.weightSpace(), group.start);
-  }
-  return std::make_unique<ClusterTextures>(state.context, *state.texel_masks, group.coefficients);
-}
-
-void keepWeights(CompressionState& state, WeightGroup& group) {
-  const std::unique_ptr<TextureSource> source = directTextures(state, group);
-  TextureRangeFinder finder(state.context, state.options.differences);
-  group.weights = group.start;
-  group.ranges.assign(group.maps.size(), {});
-  for (std::size_t m = 0; m < group.maps.size(); ++m) {
-    OpenMap& map = *group.maps[m];
-    state.forEachBand(map, "range of the differences", *source, [&](const MapBand& band) {
-      const cl::Buffer& textures = source->compute(map, band);
-      widen(group.ranges[m], finder.find(band.tiles, band.shape, textures, 0, band.tiles.tileCount()));
-    });
-  }
-  state.clock.book("range of the differences");
-}
-
-void fitWeights(CompressionState& state, WeightGroup& group, int most_sweeps) {
-  RefinementOptions refinement;
-  refinement.most_sweeps = most_sweeps;
-  RefinementProblem problem{state.weightSpace(), group.start, group.maps, {}, cellEnergy(state, group), 0};
-  problem.make_tiles = [&state](const OpenMap& map, int begin, int end) {
-    return state.weighed(raster::activeTiles(*map.classes, begin, end), map, begin);
+FittedWeights fitWeights(const FitProblem& problem, int most_sweeps, const Run& run) {
+  RefinementOptions options;
+  options.most_sweeps = most_sweeps;
+  RefinementProblem refinement{problem.space,       problem.start,      problem.maps, {},
+                               cellEnergy(problem), problem.window_rows};
+  refinement.make_tiles = [&problem](const OpenMap& map, int begin, int end) {
+    return weighed(raster::activeTiles(*map.classes, begin, end), problem.importance, map.samples->shape(), begin);
   };
-  state.buffers = std::make_unique<BandBuffers>(state.context);
-  problem.window_rows = state.plannedWindowRows(group);
-  Refinement refined = refine(state.context, problem, refinement, state.progress);
-  group.ranges = std::move(refined.ranges);
-  group.errors = std::move(refined.end_errors);
-  group.start_error = refined.errors.front();
-  if (most_sweeps > 0) {
-    state.report.refinement_errors = std::move(refined.errors);
-    group.weights = refined.weights.encode(state.grid.covered, kClippedWeights);
-  } else {
-    group.weights = group.start;
+  Refinement refined = refine(run.context, refinement, options, run.progress);
+  FittedWeights fitted;
+  fitted.weights = most_sweeps > 0 ? refined.weights.encode(problem.covered, kClippedWeights) : problem.start;
+  fitted.ranges = std::move(refined.ranges);
+  fitted.errors = std::move(refined.end_errors);
+  fitted.sweep_errors = std::move(refined.errors);
+  run.clock.book("refining");
+  return fitted;
+}
+
+FittedWeights keepWeights(const EncodedWeights& weights, std::span<const GridMap> maps, int differences,
+                          TextureSource& textures, int band_rows, const Run& run) {
+  FittedWeights kept;
+  kept.weights = weights;
+  BandBuffers buffers(run.context);
+  TextureRangeFinder finder(run.context, differences);
+  for (const GridMap& map : maps) {
+    std::vector<TextureRange>& ranges = kept.ranges.emplace_back();
+    const auto make_tiles = [&](int begin, int end) { return textures.tiles(*map.map, begin, end); };
+    const auto find = [&](const MapBand& band) {
+      const cl::Buffer& computed = textures.compute(map, band);
+      widen(ranges, finder.find(band.tiles, band.shape, computed, 0, band.tiles.tileCount()));
+    };
+    forEachMapBand(*map.map->samples, band_rows, buffers, make_tiles,
+                   fmt::format("range of the differences: {}", map.map->source->name), run.progress, find);
   }
-  state.clock.book("refining");
+  run.clock.book("range of the differences");
+  return kept;
 }
 
 }  // namespace facezip::compress

@@ -1,20 +1,49 @@
 // fit_stage.hpp - pass 2: the weights that are written, and how far the difference textures reach that go with them.
 #pragma once
 
-#include <memory>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
 
-#include "compress/compression_state.hpp"
+#include "compress/bands/map_set.hpp"
+#include "compress/codes/texture_encoding.hpp"
+#include "compress/importance.hpp"
+#include "compress/refine/grid_weights.hpp"
+#include "compress/run.hpp"
+#include "compress/texture_source.hpp"
 
 namespace facezip::compress {
 
-/// Difference textures that follow from the weights as they are: by clusters (FaceZip, Eq. 5) or influences.
-std::unique_ptr<TextureSource> directTextures(CompressionState& state, const WeightGroup& group);
+/// A set of weights as it is written, with what is known of the difference textures of the maps that share it.
+struct FittedWeights {
+  EncodedWeights weights;
+  std::vector<std::vector<TextureRange>> ranges;  ///< of every map's difference textures, C x channels
+  /// Of every map: squared error before anything is rounded, in (1/255)^2. Empty where textures were not fitted.
+  std::vector<double> errors;
+  /// Squared error of all maps, texel and fit weights in it, at the start and after each sweep.
+  std::vector<double> sweep_errors;
+};
 
-/// The paper's method: takes the start's weights. Codes must hold how far their textures reach.
-void keepWeights(CompressionState& state, WeightGroup& group);
+/// What is fitted. References outlive the call.
+struct FitProblem {
+  WeightSpace space;
+  std::span<const GridMap> maps;          ///< that share the weights
+  const EncodedWeights& start;            ///< the search's
+  double energy = 0.0;                    ///< of all differences: trace of their Gram matrix
+  std::span<const std::uint8_t> covered;  ///< of every cell of the grid: 1 if it has a covered texel
+  const std::optional<Importance>& importance;
+  int window_rows = 0;  ///< rows of cells that a window frees
+};
 
-/// The other methods: weights and difference textures fitted in turn.
+/// Weights and difference textures fitted in turn.
 /// most_sweeps  0: the start's weights, and the textures that suit them
-void fitWeights(CompressionState& state, WeightGroup& group, int most_sweeps);
+/// Throws DeviceError, InputError, Cancelled.
+FittedWeights fitWeights(const FitProblem& problem, int most_sweeps, const Run& run);
+
+/// The weights as they are, with textures that follow from them (the paper's method): a pass finds how far those reach.
+/// textures  of the maps' weights
+FittedWeights keepWeights(const EncodedWeights& weights, std::span<const GridMap> maps, int differences,
+                          TextureSource& textures, int band_rows, const Run& run);
 
 }  // namespace facezip::compress

@@ -1,5 +1,7 @@
 #include "compress/gram_stage.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "compress/search/gram.hpp"
@@ -7,45 +9,40 @@
 namespace facezip::compress {
 namespace {
 
-// A change that the sample of a map's texels missed altogether leaves nothing to estimate by.
-void lookAgain(CompressionState& state) {
-  for (std::size_t m = 0; m < state.maps.maps.size(); ++m) {
-    if (!state.rates->estimate().sawNothing(m)) continue;
-    state.rates->estimate().startOver(m);
-    OpenMap& map = state.maps.maps[m];
-    const auto make_tiles = [&](int begin, int end) { return raster::coverageTiles(*map.raster, begin, end); };
-    state.forEachBand(map, "estimating", make_tiles,
-                      [&](const MapBand& band) { state.rates->estimate().addBand(m, band); });
-  }
+std::uint64_t countCovered(const TileMasks& tiles) {
+  return static_cast<std::uint64_t>(std::ranges::count_if(tiles.texel_weights, [](float w) { return w > 0.0f; }));
 }
 
 }  // namespace
 
-void accumulateGrams(CompressionState& state) {
-  state.covered_texels.assign(state.maps.maps.size(), 0);
-  for (WeightGroup& group : state.groups) {
-    GramAccumulator accumulator(state.context, state.gram_slots, state.expressions());
-    for (OpenMap* map : group.maps) {
+GramStage accumulateGrams(const std::vector<std::vector<GridMap>>& groups, const raster::TexelMasks& masks,
+                          const GramSlots& slots, const std::optional<Importance>& importance, int band_rows,
+                          const ObserveBand& observe, const Run& run) {
+  GramStage stage;
+  BandBuffers buffers(run.context);
+  for (const std::vector<GridMap>& group : groups) {
+    GramAccumulator accumulator(run.context, slots, group.front().map->samples->expressions());
+    for (const GridMap& map : group) {
+      const raster::UvRaster& raster = *map.map->raster;
       std::uint64_t covered = 0;
       const auto make_tiles = [&](int begin, int end) {
-        return state.weighed(state.texel_masks->tiles(*map->raster, begin, end, raster::TexelMasks::Texels::kCovered),
-                             *map, begin);
+        return weighed(masks.tiles(raster, begin, end, raster::TexelMasks::Texels::kCovered), importance,
+                       map.map->samples->shape(), begin);
       };
-      state.forEachBand(*map, "Gram matrices", make_tiles, [&](const MapBand& band) {
-        accumulator.add(band.tiles, band.differences, band.shape, map->fit_weight);
-        if (state.rates) state.rates->estimate().addBand(static_cast<std::size_t>(map - state.maps.maps.data()), band);
-        covered +=
-            static_cast<std::uint64_t>(std::count_if(band.masks.texel_weights.begin(), band.masks.texel_weights.end(),
-                                                     [](float weight) { return weight > 0.0f; }));
-      });
-      state.covered_texels[static_cast<std::size_t>(map - state.maps.maps.data())] = covered;
+      const auto add = [&](const MapBand& band) {
+        accumulator.add(band.tiles, band.differences, band.shape, map.fit_weight);
+        observe(map.index, band);
+        covered += countCovered(band.masks);
+      };
+      forEachMapBand(*map.map->samples, band_rows, buffers, make_tiles,
+                     fmt::format("Gram matrices: {}", map.map->source->name), run.progress, add);
+      stage.covered_texels.resize(std::max(stage.covered_texels.size(), map.index + 1));
+      stage.covered_texels[map.index] = covered;
     }
-    group.grams = accumulator.finish();
+    stage.grams.push_back(accumulator.finish());
   }
-  if (state.rates) lookAgain(state);
-  state.report.covered_texels = state.covered_texels.front();
-  state.report.overlapping_pairs = static_cast<int>(state.gram_slots.pairs.size());
-  state.clock.book("Gram matrices");
+  run.clock.book("Gram matrices");
+  return stage;
 }
 
 }  // namespace facezip::compress

@@ -1,12 +1,31 @@
 // gram_stage.hpp - pass 1: all that the search needs of the texels (FaceZip, Eq. 2 to 4).
 #pragma once
 
-#include "compress/compression_state.hpp"
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "compress/bands/map_bands.hpp"
+#include "compress/bands/map_set.hpp"
+#include "compress/face_model.hpp"
+#include "compress/run.hpp"
+#include "compress/search/gram_matrices.hpp"
+#include "raster/texel_masks.hpp"
 
 namespace facezip::compress {
 
-/// Accumulates the Gram matrices of every group, counts covered texels, and shows the texels to the search of rates
-/// where there is one. Throws what reading and the device throw, and Cancelled.
-void accumulateGrams(CompressionState& state);
+struct GramStage {
+  std::vector<GramMatrices> grams;            ///< of every group
+  std::vector<std::uint64_t> covered_texels;  ///< of every map
+};
+
+/// Is shown every band of map `index` of the set too.
+using ObserveBand = std::function<void(std::size_t index, const MapBand& band)>;
+
+/// Accumulates the Gram matrices of every group of maps. Throws what reading and the device throw, and Cancelled.
+/// importance  of texels; may be none
+GramStage accumulateGrams(const std::vector<std::vector<GridMap>>& groups, const raster::TexelMasks& masks,
+                          const GramSlots& slots, const std::optional<Importance>& importance, int band_rows,
+                          const ObserveBand& observe, const Run& run);
 
 }  // namespace facezip::compress

@@ -45,4 +45,10 @@ void Importance::apply(TileMasks& tiles, int width, int height, int first_row) c
   }
 }
 
+TileMasks weighed(TileMasks tiles, const std::optional<Importance>& importance, const image::ImageShape& shape,
+                  int first_row) {
+  if (importance) importance->apply(tiles, shape.width, shape.height, first_row);
+  return tiles;
+}
+
 }  // namespace facezip::compress

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "compress/bands/tile_band.hpp"
@@ -28,5 +29,9 @@ class Importance {
   int height_ = 0;
   std::vector<float> values_;  ///< width_ x height_
 };
+
+/// Tiles of a texture of `shape` with the importance in their texel weights, where there is one.
+TileMasks weighed(TileMasks tiles, const std::optional<Importance>& importance, const image::ImageShape& shape,
+                  int first_row);
 
 }  // namespace facezip::compress

@@ -1,10 +1,12 @@
 #include "compress/package_output.hpp"
 
+#include <fmt/format.h>
 #include <tbb/task_group.h>
 
 #include <span>
 #include <utility>
 
+#include "compress/bands/map_bands.hpp"
 #include "compress/codes/texture_encoder.hpp"
 #include "facezip/package.hpp"
 #include "package/guides.hpp"
@@ -14,7 +16,7 @@ namespace facezip::compress {
 namespace {
 
 PackageMap describeMap(const MapSolution& solution, int differences) {
-  const OpenMap& map = *solution.map;
+  const OpenMap& map = *solution.map.map;
   const image::ImageShape& shape = map.samples->shape();
   PackageMap described;
   described.name = map.source->name;
@@ -23,14 +25,14 @@ PackageMap describeMap(const MapSolution& solution, int differences) {
   described.channels = shape.channels;
   described.sample_type = shape.type;
   described.colour_space = map.source->colour_space;
-  described.weight_scale = map.weight_scale;
+  described.weight_scale = solution.map.weight_scale;
   described.weight_set = solution.weight_set;
   described.metric_weight = map.source->metric_weight;
-  described.difference_bits = solution.bits;
+  described.difference_bits = solution.codes.bits;
   for (int i = 0; i < differences; ++i) {
     PackageDifference difference;
     for (int c = 0; c < shape.channels; ++c) {
-      const TextureEncoding& e = solution.encoding[static_cast<std::size_t>(i * shape.channels + c)];
+      const TextureEncoding& e = solution.codes.encoding[static_cast<std::size_t>(i * shape.channels + c)];
       difference.scale.push_back(e.scale);
       difference.offset.push_back(e.offset);
     }
@@ -39,15 +41,15 @@ PackageMap describeMap(const MapSolution& solution, int differences) {
   return described;
 }
 
-PackageDescription describe(const Capture& capture, const PackageSolution& solution) {
+PackageDescription describe(const PackageSolution& solution) {
   PackageDescription description;
-  description.name = capture.name;
-  description.expressions = capture.expressions;
+  description.name = solution.capture.name;
+  description.expressions = solution.capture.expressions;
   description.differences = solution.differences;
-  for (const EncodedWeights& weights : solution.weights) {
+  for (const EncodedWeights* weights : solution.weights) {
     PackageWeights& set = description.weights.emplace_back();
-    set.scale = weights.scale;
-    set.offset = weights.offset;
+    set.scale = weights->scale;
+    set.offset = weights->offset;
   }
   for (const MapSolution& map : solution.maps) description.maps.push_back(describeMap(map, solution.differences));
   description.method_json = solution.method_json;
@@ -65,20 +67,21 @@ struct BandRows {
 };
 
 /// The files are written while the device works on the band that follows.
-void writeMap(device::DeviceContext& context, const MapSolution& solution, int index, int differences,
-              const BandPass& pass, package::PackageWriter& writer) {
-  TextureEncoder encoder(context, differences);
+void writeMap(const MapSolution& solution, int index, int differences, int band_rows, BandBuffers& buffers,
+              package::PackageWriter& writer, const Run& run) {
+  const OpenMap& map = *solution.map.map;
+  TextureEncoder encoder(run.context, differences);
   BandRows at_device, at_files;
   tbb::task_group files;
-  pass(*solution.map, *solution.source, [&](const MapBand& band) {
+  const auto write = [&](const MapBand& band) {
     at_device.rows = band.end - band.begin;
     const auto rows = static_cast<std::size_t>(at_device.rows);
     const std::size_t code_bytes =
-        rows * static_cast<std::size_t>(band.shape.width * band.shape.channels * solution.bits / 8);
+        rows * static_cast<std::size_t>(band.shape.width * band.shape.channels * solution.codes.bits / 8);
     at_device.codes.resize(code_bytes * static_cast<std::size_t>(differences));
-    const cl::Buffer& textures = solution.source->compute(*solution.map, band);
-    encoder.encode(band.tiles, band.shape, textures, solution.encoding, solution.bits, at_device.codes);
-    const auto neutral = band.samples.first(rows * solution.map->samples->shape().rowBytes());
+    const cl::Buffer& textures = solution.textures->compute(solution.map, band);
+    encoder.encode(band.tiles, band.shape, textures, solution.codes.encoding, solution.codes.bits, at_device.codes);
+    const auto neutral = band.samples.first(rows * map.samples->shape().rowBytes());
     at_device.neutral.assign(neutral.begin(), neutral.end());
     files.wait();
     std::swap(at_device, at_files);
@@ -87,23 +90,27 @@ void writeMap(device::DeviceContext& context, const MapSolution& solution, int i
       const auto codes = std::span(at_files.codes).subspan(static_cast<std::size_t>(i) * code_bytes, code_bytes);
       files.run([&, i, codes] { writer.writeDifferenceRows(index, i, codes, at_files.rows); });
     }
-  });
+  };
+  const auto make_tiles = [&](int begin, int end) { return solution.textures->tiles(map, begin, end); };
+  forEachMapBand(*map.samples, band_rows, buffers, make_tiles, fmt::format("writing: {}", map.source->name),
+                 run.progress, write);
   files.wait();
 }
 
 }  // namespace
 
-void writePackage(device::DeviceContext& context, const Capture& capture, const PackageSolution& solution,
-                  const BandPass& pass, const std::filesystem::path& directory) {
-  package::PackageWriter writer(describe(capture, solution), directory);
+void writePackageFiles(const PackageSolution& solution, const std::filesystem::path& directory, int band_rows,
+                       const Run& run) {
+  package::PackageWriter writer(describe(solution), directory);
   tbb::task_group weights;  // beside the maps
   for (std::size_t set = 0; set < solution.weights.size(); ++set) {
     weights.run([&, set] {
-      writer.writeWeights(static_cast<int>(set), std::as_bytes(std::span(solution.weights[set].codes)));
+      writer.writeWeights(static_cast<int>(set), std::as_bytes(std::span(solution.weights[set]->codes)));
     });
   }
+  BandBuffers buffers(run.context);
   for (std::size_t m = 0; m < solution.maps.size(); ++m) {
-    writeMap(context, solution.maps[m], static_cast<int>(m), solution.differences, pass, writer);
+    writeMap(solution.maps[m], static_cast<int>(m), solution.differences, band_rows, buffers, writer, run);
   }
   weights.wait();
   image::writeImage(directory / package::kMasksFile, solution.guides.picture);

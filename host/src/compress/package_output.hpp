@@ -2,14 +2,15 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "compress/bands/map_bands.hpp"
 #include "compress/bands/map_set.hpp"
+#include "compress/codes/map_codes.hpp"
 #include "compress/face_guides.hpp"
 #include "compress/refine/grid_weights.hpp"
+#include "compress/run.hpp"
 #include "compress/texture_source.hpp"
 #include "facezip/capture.hpp"
 
@@ -17,28 +18,26 @@ namespace facezip::compress {
 
 /// What a package holds of one map.
 struct MapSolution {
-  OpenMap* map = nullptr;
+  GridMap map;
   int weight_set = 0;
-  std::vector<TextureEncoding> encoding;  ///< C x channels
-  int bits = 8;                           ///< of the codes of difference textures
-  TextureSource* source = nullptr;
+  MapCodes codes;
+  std::unique_ptr<TextureSource> textures;  ///< of difference textures; may refer to `codes`, which then stay in place
 };
 
+/// What a package is written from, but for the texels.
 struct PackageSolution {
-  int differences = 0;                  ///< C
-  std::vector<EncodedWeights> weights;  ///< of each weight set
-  std::vector<MapSolution> maps;
+  const Capture& capture;
+  int differences = 0;                         ///< C
+  std::vector<const EncodedWeights*> weights;  ///< of each weight set
+  std::vector<MapSolution> maps;               ///< in the order of the capture's
   std::string method_json;
   bool has_mesh = false;  ///< mesh.glb is written beside it
-  MaskGuides guides;
+  const MaskGuides& guides;
 };
 
-/// Runs a pass over the bands of a map with the tiles of `source`.
-using BandPass =
-    std::function<void(OpenMap& map, TextureSource& source, const std::function<void(const MapBand&)>& visit)>;
-
-/// Writes the files of the package into `directory`. Throws OutputError, and what the pass throws.
-void writePackage(device::DeviceContext& context, const Capture& capture, const PackageSolution& solution,
-                  const BandPass& pass, const std::filesystem::path& directory);
+/// Writes the files of the package into `directory`, in bands of so many rows.
+/// Throws OutputError, and what passes over the texels throw.
+void writePackageFiles(const PackageSolution& solution, const std::filesystem::path& directory, int band_rows,
+                       const Run& run);
 
 }  // namespace facezip::compress

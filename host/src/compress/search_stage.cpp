@@ -5,72 +5,93 @@
 #include "compress/search/permutation_solver.hpp"
 #include "compress/search/seam_cost.hpp"
 #include "compress/search/texture_assignment.hpp"
-#include "compress/search/weight_map.hpp"
 
 namespace facezip::compress {
 namespace {
 
-// Li et al. 2020, Eq. 10 to 12: the weights follow from the meshes alone.
-void assignInfluences(CompressionState& state, WeightGroup& group) {
-  state.progress.stage("influences", 0);
-  group.start = normalisedInfluences(
-      state.face.mesh,
-      vertexInfluences(state.face.mesh, readExpressionMeshes(state.capture, state.face.mesh,
-                                                             "its mesh, for its influence", state.progress)),
-      *state.maps.maps[state.maps.reference].raster, state.options.weight_scale);
-  state.clock.book("influences");
+Clustering cluster(const GramMatrices& grams, const CompressOptions& options, int differences, const Run& run) {
+  run.progress.stage("clustering", 0);
+  KmeansOptions kmeans;
+  kmeans.clusters = differences;
+  kmeans.restarts = options.cluster_restarts;
+  kmeans.seed = options.seed;
+  Clustering clustering = clusterFragments(run.context, grams, kmeans);
+  run.clock.book("clustering");
+  run.progress.checkCancelled();
+  return clustering;
 }
 
-Permutation choosePermutation(CompressionState& state, const SeamTables& tables) {
-  if (state.options.method == CompressOptions::Method::kNoPermutation) return identityPermutation(tables);
+struct FoundPermutation {
+  Permutation permutation;
+  PermutationRecord record;
+};
+
+FoundPermutation permute(const SeamTables& tables, const CompressOptions& options, const Run& run) {
+  if (options.method == Method::kNoPermutation) {
+    FoundPermutation found{identityPermutation(tables), {}};
+    found.record.cost = found.permutation.cost;
+    return found;
+  }
   PermutationSolverOptions solver;
-  solver.solver = state.options.permutation_solver;
-  solver.descent.restarts = state.options.restarts;
-  solver.descent.seed = state.options.seed;
-  solver.descent.checkpoint = [&state] { state.progress.checkCancelled(); };
-  const PermutationSolution found = solvePermutation(tables, solver);
-  state.report.permutation_solver = found.by_descent ? "descent" : "message-passing";
-  state.report.permutation_bound = found.bound;
-  state.report.permutation_bounds = found.bounds;
-  state.report.convergence = found.descent.sweep_costs;
-  state.report.restart_costs = found.descent.finalCosts();
-  if (!state.report.restart_costs.empty()) state.report.permutation_cost_median = found.descent.medianFinalCost();
-  return found.best;
+  solver.solver = options.permutation_solver;
+  solver.descent.restarts = options.restarts;
+  solver.descent.seed = options.seed;
+  solver.descent.checkpoint = [&run] { run.progress.checkCancelled(); };
+  const PermutationSolution solution = solvePermutation(tables, solver);
+  PermutationRecord record;
+  record.cost = solution.best.cost;
+  record.solver = solution.by_descent ? "descent" : "message-passing";
+  record.bound = solution.bound;
+  record.bounds = solution.bounds;
+  record.convergence = solution.descent.sweep_costs;
+  record.restart_costs = solution.descent.finalCosts();
+  if (!record.restart_costs.empty()) record.median_restart_cost = solution.descent.medianFinalCost();
+  return {solution.best, std::move(record)};
+}
+
+/// Eq. 6 at every cell: weights are 0 or 1 between masks, so a byte holds them as they are.
+EncodedWeights layWeightMaps(const Clustering& clustering, const Permutation& permutation, const GramMatrices& grams,
+                             const CellMasks& cells, int differences, const Run& run) {
+  run.progress.stage("weight maps", 0);
+  const std::vector<int> texture_of = textureOfExpression(clustering, permutation);
+  WeightMapper mapper(run.context, texture_of, grams.slots.masks, grams.expressions, differences);
+  EncodedWeights weights;
+  weights.scale.assign(static_cast<std::size_t>(differences), 1.0 / 255.0);
+  weights.offset.assign(static_cast<std::size_t>(differences), 0.0);
+  weights.codes.resize(mapper.outputBytes(cells.cells()));
+  mapper.fillAll(cells, weights.codes);
+  run.clock.book("weight maps");
+  return weights;
 }
 
 }  // namespace
 
-void searchWeights(CompressionState& state, WeightGroup& group) {
-  if (state.options.method == CompressOptions::Method::kCompressStretch) {
-    assignInfluences(state, group);
-    return;
-  }
-  state.progress.stage("clustering", 0);
-  KmeansOptions kmeans;
-  kmeans.clusters = state.options.differences;
-  kmeans.restarts = state.options.cluster_restarts;
-  kmeans.seed = state.options.seed;
-  const Clustering clustering = clusterFragments(state.context, group.grams, kmeans);
-  state.clock.book("clustering");
-  state.progress.checkCancelled();
-  state.progress.stage("permutation", 0);
-  const SeamTables tables = computeSeamTables(state.context, group.grams, clustering);
-  state.clock.book("seam costs");
-  const Permutation permutation = choosePermutation(state, tables);
-  state.report.permutation_cost = permutation.cost;
-  group.coefficients = {state.report.masks, state.options.differences, state.expressions(),
-                        differenceCoefficients(clustering, permutation)};
-  state.clock.book("permutation");
-  state.progress.checkCancelled();
-  state.progress.stage("weight maps", 0);
-  const std::vector<int> texture_of = textureOfExpression(clustering, permutation);
-  WeightMapper mapper(state.context, texture_of, state.report.masks, state.expressions(), state.options.differences);
-  const std::size_t cells = state.grid.cells.cells();
-  group.start.scale.assign(static_cast<std::size_t>(state.options.differences), 1.0 / 255.0);
-  group.start.offset.assign(static_cast<std::size_t>(state.options.differences), 0.0);
-  group.start.codes.resize(mapper.outputBytes(cells));
-  mapper.fillAll(state.grid.cells, group.start.codes);
-  state.clock.book("weight maps");
+SearchedWeights searchWeights(const GramMatrices& grams, const CellMasks& cells, const CompressOptions& options,
+                              int differences, const Run& run) {
+  const Clustering clustering = cluster(grams, options, differences, run);
+  run.progress.stage("permutation", 0);
+  const SeamTables tables = computeSeamTables(run.context, grams, clustering);
+  run.clock.book("seam costs");
+  FoundPermutation found = permute(tables, options, run);
+  SearchedWeights searched;
+  searched.coefficients = {grams.slots.masks, differences, grams.expressions,
+                           differenceCoefficients(clustering, found.permutation)};
+  run.clock.book("permutation");
+  run.progress.checkCancelled();
+  searched.weights = layWeightMaps(clustering, found.permutation, grams, cells, differences, run);
+  searched.permutation = std::move(found.record);
+  return searched;
+}
+
+SearchedWeights influenceWeights(const Capture& capture, const Face& face, const raster::UvRaster& raster,
+                                 int weight_scale, const Run& run) {
+  run.progress.stage("influences", 0);
+  const std::vector<Eigen::MatrixX3d> meshes =
+      readExpressionMeshes(capture, face.mesh, "its mesh, for its influence", run.progress);
+  SearchedWeights searched;
+  searched.weights = normalisedInfluences(face.mesh, vertexInfluences(face.mesh, meshes), raster, weight_scale);
+  run.clock.book("influences");
+  return searched;
 }
 
 }  // namespace facezip::compress

@@ -2,12 +2,48 @@
 // 6), or the influences of compress and stretch maps.
 #pragma once
 
-#include "compress/compression_state.hpp"
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compress/face.hpp"
+#include "compress/refine/grid_weights.hpp"
+#include "compress/run.hpp"
+#include "compress/search/difference_texture.hpp"
+#include "compress/search/gram_matrices.hpp"
+#include "compress/search/weight_map.hpp"
+#include "facezip/compress.hpp"
+#include "raster/uv_raster.hpp"
 
 namespace facezip::compress {
 
-/// Sets the group's start, and the coefficients of its textures where there are clusters. Touches no texel.
-/// Throws DeviceError, InputError (an expression without mesh, for influences), Cancelled.
-void searchWeights(CompressionState& state, WeightGroup& group);
+/// How the permutation was found, for reports.
+struct PermutationRecord {
+  double cost = 0.0;            ///< Eq. 3
+  std::string solver;           ///< "descent" or "message-passing"; "" if not permuted
+  std::optional<double> bound;  ///< lower bound of every permutation's cost
+  std::vector<double> bounds;   ///< pairs of masks alone, then after each iteration of message passing
+  double median_restart_cost = 0.0;
+  std::vector<double> restart_costs;
+  std::vector<std::vector<double>> convergence;  ///< cost after each sweep, per restart
+};
+
+struct SearchedWeights {
+  EncodedWeights weights;            ///< Eq. 6, or normalised influences
+  TextureCoefficients coefficients;  ///< Eq. 5; empty for influences
+  PermutationRecord permutation;
+};
+
+/// Clusters the fragments, permutes the clusters and lays the weight maps that follow. Touches no texel.
+/// cells  masks at the cells of the weight grid
+/// Throws DeviceError, Cancelled.
+SearchedWeights searchWeights(const GramMatrices& grams, const CellMasks& cells, const CompressOptions& options,
+                              int differences, const Run& run);
+
+/// The weights of compress and stretch maps (Li et al. 2020, Eq. 10 to 12): they follow from the meshes alone.
+/// raster  of the largest map, with `weight_scale` texels to a cell
+/// Throws InputError: an expression without mesh.
+SearchedWeights influenceWeights(const Capture& capture, const Face& face, const raster::UvRaster& raster,
+                                 int weight_scale, const Run& run);
 
 }  // namespace facezip::compress

@@ -5,11 +5,10 @@
 namespace facezip::compress {
 
 FittedTextures::FittedTextures(device::DeviceContext& context, const WeightSpace& space, const EncodedWeights& weights,
-                               float ridge, std::span<const TextureEncoding> encoding, int bits)
+                               const MapCodes& codes)
     : weights_(weights),
-      ridge_(ridge),
-      encoding_(encoding),
-      bits_(bits),
+      codes_(codes),
+      ridge_(ridgeOf(RefinementOptions{}, space)),
       window_(context, space),
       fit_(context, space) {}
 
@@ -17,14 +16,14 @@ TileMasks FittedTextures::tiles(const OpenMap& map, int begin, int end) const {
   return raster::activeTiles(*map.classes, begin, end);
 }
 
-const cl::Buffer& FittedTextures::compute(const OpenMap& map, const MapBand& band) {
+const cl::Buffer& FittedTextures::compute(const GridMap& map, const MapBand& band) {
   const WeightSpace& space = window_.space();
   const WindowRows rows = cellRowsOf(band.begin, band.end, map.weight_scale, space.rows);
   std::vector<float> weights(static_cast<std::size_t>(rows.count()) * space.rowFloats());
   decodeRows(weights_, space, rows.begin, rows.end, weights);
   window_.set(rows, weights, weights);
   const GridBand grid_band{band.tiles, band.shape, band.differences, band.begin, map.weight_scale};
-  const cl::Buffer& textures = fit_.computeRounded(grid_band, window_, ridge_, encoding_, bits_);
+  const cl::Buffer& textures = fit_.computeRounded(grid_band, window_, ridge_, codes_.encoding, codes_.bits);
   for (const FitError& error : fit_.errors()) squared_error_ += error.plain;
   return textures;
 }

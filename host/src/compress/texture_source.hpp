@@ -7,6 +7,7 @@
 
 #include "compress/bands/map_bands.hpp"
 #include "compress/bands/map_set.hpp"
+#include "compress/codes/map_codes.hpp"
 #include "compress/refine/difference_fit.hpp"
 #include "compress/refine/grid_weights.hpp"
 #include "compress/search/difference_texture.hpp"
@@ -20,7 +21,7 @@ class TextureSource {
   /// Tiles of rows [begin, end) of a map, with what compute() needs of masks.
   virtual TileMasks tiles(const OpenMap& map, int begin, int end) const = 0;
   /// Difference textures of a band, [tile][C][channel][256] float in units of 1/255. The next call overwrites them.
-  virtual const cl::Buffer& compute(const OpenMap& map, const MapBand& band) = 0;
+  virtual const cl::Buffer& compute(const GridMap& map, const MapBand& band) = 0;
 };
 
 /// FaceZip, Eq. 5.
@@ -32,7 +33,7 @@ class ClusterTextures : public TextureSource {
   TileMasks tiles(const OpenMap& map, int begin, int end) const override {
     return masks_.tiles(*map.raster, begin, end, raster::TexelMasks::Texels::kCoveredAndGutter);
   }
-  const cl::Buffer& compute(const OpenMap&, const MapBand& band) override {
+  const cl::Buffer& compute(const GridMap&, const MapBand& band) override {
     return textures_.compute(band.tiles, band.differences, band.shape);
   }
 
@@ -44,20 +45,19 @@ class ClusterTextures : public TextureSource {
 /// The textures that suit the weights as they are decoded, rounded to their codes (difference_fit.hpp).
 class FittedTextures : public TextureSource {
  public:
-  /// weights, encoding  are kept by reference; encoding and bits are the map's
-  FittedTextures(device::DeviceContext& context, const WeightSpace& space, const EncodedWeights& weights, float ridge,
-                 std::span<const TextureEncoding> encoding, int bits);
+  /// weights, codes  are kept by reference; the codes are the map's
+  FittedTextures(device::DeviceContext& context, const WeightSpace& space, const EncodedWeights& weights,
+                 const MapCodes& codes);
   TileMasks tiles(const OpenMap& map, int begin, int end) const override;
-  const cl::Buffer& compute(const OpenMap& map, const MapBand& band) override;
+  const cl::Buffer& compute(const GridMap& map, const MapBand& band) override;
 
   /// Squared error over the covered texels of all bands so far, in (1/255)^2, before frames are rounded.
   double squaredError() const { return squared_error_; }
 
  private:
   const EncodedWeights& weights_;
+  const MapCodes& codes_;
   float ridge_;
-  std::span<const TextureEncoding> encoding_;
-  int bits_;
   WeightWindow window_;
   DifferenceFit fit_;
   double squared_error_ = 0.0;

@@ -136,7 +136,6 @@ void requireSameShape(const compress::OpenMap& map, const PackageMap& packed, co
 compress::MapSet openMaps(const Subject& subject) {
   compress::MapSet maps = compress::openMaps(subject.capture);
   compress::makeRasters(maps, subject.face.mesh, subject.face.region, 0);
-  assignWeightScales(maps, subject.recorded.weight_scale);
   return maps;
 }
 

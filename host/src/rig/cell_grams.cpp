@@ -43,7 +43,7 @@ Eigen::MatrixXf differencesOf(const std::vector<float>& values, const std::vecto
 
 }  // namespace
 
-std::vector<SolvedCell> gatherCells(compress::MapSet& maps, const SkinFeatures& features,
+std::vector<SolvedCell> gatherCells(std::span<const compress::GridMap> maps, const SkinFeatures& features,
                                     const std::vector<raster::TexelSample>& samples, int columns, std::size_t most,
                                     double& covered_samples, Progress& progress) {
   std::vector<int> sampled;
@@ -56,22 +56,22 @@ std::vector<SolvedCell> gatherCells(compress::MapSet& maps, const SkinFeatures& 
   for (std::size_t i = 0; i < sampled.size(); i += stride) chosen.push_back(sampled[i]);
   std::vector<SolvedCell> cells(chosen.size());
   std::vector<double> counts(chosen.size(), 0.0);
-  const auto expressions = static_cast<Eigen::Index>(maps.maps.front().samples->expressions());
+  const auto expressions = static_cast<Eigen::Index>(maps.front().map->samples->expressions());
   tbb::parallel_for(std::size_t{0}, chosen.size(), [&](std::size_t i) {
     cells[i] = {features.at(samples[static_cast<std::size_t>(chosen[i])]),
                 Eigen::MatrixXd::Zero(expressions, expressions)};
   });
-  for (compress::OpenMap& map : maps.maps) {
+  for (const compress::GridMap& map : maps) {
     const int scale = map.weight_scale;
     const int band_rows = std::max(1, kBandRows / scale) * scale;
     std::vector<float> values;
-    progress.stage(fmt::format("inner products: {}", map.source->name),
-                   static_cast<std::size_t>(map.samples->shape().height));
-    map.samples->forEachBand(band_rows, progress, [&](const image::SampleBand& band) {
-      const compress::BandShape shape = compress::bandShape(*map.samples, band.end - band.begin);
+    progress.stage(fmt::format("inner products: {}", map.map->source->name),
+                   static_cast<std::size_t>(map.map->samples->shape().height));
+    map.map->samples->forEachBand(band_rows, progress, [&](const image::SampleBand& band) {
+      const compress::BandShape shape = compress::bandShape(*map.map->samples, band.end - band.begin);
       values.resize(band.samples.size() / image::sampleBytes(shape.sample_type));
       compress::toValues(band.samples, shape.sample_type, values);
-      const std::vector<raster::TexelSample> raster = map.raster->coveredRows(band.begin, band.end);
+      const std::vector<raster::TexelSample> raster = map.map->raster->coveredRows(band.begin, band.end);
       const auto first = std::lower_bound(chosen.begin(), chosen.end(), band.begin / scale * columns);
       const auto last = std::lower_bound(first, chosen.end(), (band.end + scale - 1) / scale * columns);
       tbb::parallel_for(first - chosen.begin(), last - chosen.begin(), [&](std::ptrdiff_t i) {

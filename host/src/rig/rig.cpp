@@ -182,7 +182,7 @@ class Rigging {
   void solveTextures() {
     const Package package = Package::open(staged_.path());
     const compress::Face face = compress::readFace(capture_, options_.compress.region);
-    compress::MapSet maps = openPackageMaps(capture_, face, package);
+    const PackageMaps maps = openPackageMaps(capture_, face, package);
     const SkinFeatures features(subject_.neutral, subject_.expressions, rig_);
     const ChosenSolve chosen = chooseSolve(options_, rig_.weights, features, maps, progress_);
     report_.texture_rank = rankOf(rig_.weights);

@@ -21,36 +21,36 @@ namespace {
 /// Cells that leaving out is tried on: errors in so many agree with those in all to a per cent.
 constexpr std::size_t kCellsToChooseBy = 2000;
 
-const compress::OpenMap& firstMapOf(const Package& package, const compress::MapSet& maps, int set) {
-  for (std::size_t m = 0; m < maps.maps.size(); ++m) {
-    if (package.maps()[m].weight_set == set) return maps.maps[m];
+const compress::GridMap& firstMapOf(const Package& package, const PackageMaps& maps, int set) {
+  for (const compress::GridMap& map : maps.maps) {
+    if (package.maps()[map.index].weight_set == set) return map;
   }
   return maps.maps.front();  // Package::open refuses a set that no map uses
 }
 
 }  // namespace
 
-compress::MapSet openPackageMaps(const Capture& capture, const compress::Face& face, const Package& package) {
-  compress::MapSet maps = compress::openMaps(capture);
-  compress::makeRasters(maps, face.mesh, face.region, 0);
-  for (std::size_t m = 0; m < maps.maps.size(); ++m) {
-    maps.maps[m].weight_scale = package.maps()[m].weight_scale;
-    maps.maps[m].fit_weight = maps.maps[m].metric_weight;
+PackageMaps openPackageMaps(const Capture& capture, const compress::Face& face, const Package& package) {
+  PackageMaps maps{compress::openMaps(capture), {}};
+  compress::makeRasters(maps.set, face.mesh, face.region, 0);
+  for (std::size_t m = 0; m < maps.set.maps.size(); ++m) {
+    compress::OpenMap& map = maps.set.maps[m];
+    maps.maps.push_back({&map, m, map.metric_weight, package.maps()[m].weight_scale});
   }
   return maps;
 }
 
 ChosenSolve chooseSolve(const RigOptions& options, const Eigen::MatrixXd& weights, const SkinFeatures& features,
-                        compress::MapSet& maps, Progress& progress) {
+                        const PackageMaps& maps, Progress& progress) {
   ChosenSolve chosen;
   chosen.solver = {options.texture_solve, weights, options.texture_damping.value_or(0.3), 0.0};
   if (options.texture_solve != TextureSolve::kLocal) return chosen;
-  const compress::OpenMap& map = maps.maps[maps.reference];
-  const std::vector<raster::TexelSample> samples = raster::cellSamples(*map.raster, map.weight_scale);
-  const int columns = (map.samples->shape().width + map.weight_scale - 1) / map.weight_scale;
+  const compress::GridMap& map = maps.reference();
+  const std::vector<raster::TexelSample> samples = raster::cellSamples(*map.map->raster, map.weight_scale);
+  const int columns = (map.map->samples->shape().width + map.weight_scale - 1) / map.weight_scale;
   double count = 0.0;
   const std::vector<SolvedCell> cells =
-      gatherCells(maps, features, samples, columns, kCellsToChooseBy, count, progress);
+      gatherCells(maps.maps, features, samples, columns, kCellsToChooseBy, count, progress);
   progress.stage("leaving expressions out", 0);
   const LeftOut best = leaveOneOut(chosen.solver, cells, options.texture_damping);
   chosen.solver.damping = best.damping;
@@ -63,7 +63,7 @@ ChosenSolve chooseSolve(const RigOptions& options, const Eigen::MatrixXd& weight
 
 double addShapeWeights(const fs::path& directory, const std::vector<std::string>& captured,
                        const std::vector<std::string>& shapes, const TextureSolver& solver,
-                       const SkinFeatures& features, const compress::MapSet& maps, Progress& progress) {
+                       const SkinFeatures& features, const PackageMaps& maps, Progress& progress) {
   const Package package = Package::open(directory);
   PackageDescription description = package.description();
   description.expressions = captured;

@@ -22,12 +22,18 @@ struct ChosenSolve {
   double left_out_nothing = 0.0;  ///< likewise, of predicting no change
 };
 
-/// Maps of a capture as the package blends them.
-compress::MapSet openPackageMaps(const Capture& capture, const compress::Face& face, const Package& package);
+/// Maps of a capture as a package blends them.
+struct PackageMaps {
+  compress::MapSet set;
+  std::vector<compress::GridMap> maps;  ///< of the set, all of them
+
+  const compress::GridMap& reference() const { return maps[set.reference]; }
+};
+PackageMaps openPackageMaps(const Capture& capture, const compress::Face& face, const Package& package);
 
 /// Takes lambda and the share of strain from the options, or from leaving captured expressions out.
 ChosenSolve chooseSolve(const RigOptions& options, const Eigen::MatrixXd& weights, const SkinFeatures& features,
-                        compress::MapSet& maps, Progress& progress);
+                        const PackageMaps& maps, Progress& progress);
 
 /// Replaces the weights and the names of the package in `directory`: `captured` names, then those of the shapes, whose
 /// weight maps follow from the captured ones' (shape_codes.hpp). Atlas and package.json are written anew; textures
@@ -35,6 +41,6 @@ ChosenSolve chooseSolve(const RigOptions& options, const Eigen::MatrixXd& weight
 /// OutputError, Cancelled.
 double addShapeWeights(const std::filesystem::path& directory, const std::vector<std::string>& captured,
                        const std::vector<std::string>& shapes, const TextureSolver& solver,
-                       const SkinFeatures& features, const compress::MapSet& maps, Progress& progress);
+                       const SkinFeatures& features, const PackageMaps& maps, Progress& progress);
 
 }  // namespace facezip::rig

@@ -43,13 +43,13 @@ Eigen::MatrixXf decodeSet(const Package& package, int set) {
 class ShapeSolver {
  public:
   ShapeSolver(const Package& package, int set, const TextureSolver& solver, const SkinFeatures& features,
-              const compress::OpenMap& map)
+              const compress::GridMap& map)
       : captured_(decodeSet(package, set)),
         grid_(package.weightSets()[static_cast<std::size_t>(set)]),
         channels_(static_cast<std::size_t>(package.differences())),
         solver_(solver),
         features_(features),
-        samples_(raster::cellSamples(*map.raster, map.weight_scale)),
+        samples_(raster::cellSamples(*map.map->raster, map.weight_scale)),
         source_(raster::nearestSampled(samples_, grid_.tile_width, grid_.tile_height)),
         result_{grid_.scale, grid_.offset, {}, 0.0} {
     if (solver.method != TextureSolve::kLocal) everywhere_ = globalSolution(solver);
@@ -160,7 +160,7 @@ class ShapeSolver {
 }  // namespace
 
 ShapeCodes solveShapes(const Package& package, int set, const TextureSolver& solver, const SkinFeatures& features,
-                       const compress::OpenMap& map, Progress& progress) {
+                       const compress::GridMap& map, Progress& progress) {
   return ShapeSolver(package, set, solver, features, map).run(progress);
 }
 

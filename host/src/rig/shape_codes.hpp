@@ -25,6 +25,6 @@ struct ShapeCodes {
 /// solution makes would coarsen what was captured.
 /// map  one that the set is used by. Throws InputError, Cancelled.
 ShapeCodes solveShapes(const Package& package, int set, const TextureSolver& solver, const SkinFeatures& features,
-                       const compress::OpenMap& map, Progress& progress);
+                       const compress::GridMap& map, Progress& progress);
 
 }  // namespace facezip::rig

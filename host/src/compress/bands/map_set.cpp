@@ -51,7 +51,9 @@ void makeRasters(MapSet& set, const geometry::TriangleMesh& mesh, std::span<cons
   }
 }
 
-void classifyTexels(MapSet& set) {
+void layOutMaps(MapSet& set, const geometry::TriangleMesh& mesh, std::span<const int> region,
+                std::optional<int> gutter) {
+  makeRasters(set, mesh, region, gutter);
   std::map<const raster::UvRaster*, std::shared_ptr<const raster::TexelClasses>> classes;
   for (OpenMap& map : set.maps) {
     auto& one = classes[map.raster.get()];
@@ -60,15 +62,10 @@ void classifyTexels(MapSet& set) {
   }
 }
 
-void assignFitWeights(std::span<OpenMap* const> maps) {
-  const bool any_counts =
-      std::any_of(maps.begin(), maps.end(), [](const OpenMap* map) { return map->metric_weight > 0.0; });
-  for (OpenMap* map : maps) map->fit_weight = any_counts ? map->metric_weight : 1.0;
-}
-
-void assignWeightScales(MapSet& set, int weight_scale) {
+std::vector<int> weightScales(const MapSet& set, int weight_scale) {
   const image::ImageShape& reference = set.maps[set.reference].samples->shape();
-  for (OpenMap& map : set.maps) {
+  std::vector<int> scales;
+  for (const OpenMap& map : set.maps) {
     const image::ImageShape& shape = map.samples->shape();
     const int across = scaleOf(shape.width, reference.width, weight_scale);
     const int down = scaleOf(shape.height, reference.height, weight_scale);
@@ -83,8 +80,22 @@ void assignWeightScales(MapSet& set, int weight_scale) {
                        reference.width, reference.height, set.maps[set.reference].source->name, weight_scale),
            fmt::format("{} x {}", shape.width, shape.height), "resize the map"});
     }
-    map.weight_scale = across;
+    scales.push_back(across);
   }
+  return scales;
+}
+
+std::vector<std::vector<GridMap>> groupMaps(MapSet& set, bool each_alone, int weight_scale) {
+  const std::vector<int> scales = weightScales(set, weight_scale);
+  std::vector<std::vector<GridMap>> groups(each_alone ? set.maps.size() : 1);
+  for (std::size_t m = 0; m < set.maps.size(); ++m) {
+    groups[each_alone ? m : 0].push_back({&set.maps[m], m, set.maps[m].metric_weight, scales[m]});
+  }
+  for (std::vector<GridMap>& group : groups) {
+    const bool any_counts = std::ranges::any_of(group, [](const GridMap& map) { return map.fit_weight > 0.0; });
+    for (GridMap& map : group) map.fit_weight = any_counts ? map.fit_weight : 1.0;
+  }
+  return groups;
 }
 
 }  // namespace facezip::compress

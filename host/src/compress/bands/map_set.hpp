@@ -19,11 +19,9 @@ namespace facezip::compress {
 struct OpenMap {
   const CaptureMap* source = nullptr;
   double metric_weight = 1.0;  ///< how much its errors count: the source's, but 1 where that of every map is 0
-  double fit_weight = 1.0;     ///< the same among the maps that share a set of weights with it
   std::unique_ptr<image::SampleBands> samples;
   std::shared_ptr<const raster::UvRaster> raster;       ///< shared by the maps of one size
   std::shared_ptr<const raster::TexelClasses> classes;  ///< of the raster; likewise
-  int weight_scale = 0;                                 ///< texels of this map per weight cell, per axis
 };
 
 struct MapSet {
@@ -32,7 +30,15 @@ struct MapSet {
       0;  ///< the largest map, whose texels weight_scale counts; the weight grid is made at its size
 };
 
-/// Opens every texture of the capture and checks them. Rasters and weight scales are left open.
+/// A map on the weight grid, among the maps that share a set of weights.
+struct GridMap {
+  OpenMap* map = nullptr;
+  std::size_t index = 0;    ///< in MapSet::maps
+  double fit_weight = 1.0;  ///< how much its errors count among those maps
+  int weight_scale = 0;     ///< texels of this map per weight cell, per axis
+};
+
+/// Opens every texture of the capture and checks them. Rasters are left open.
 /// Throws InputError: a texture that does not fit its neutral.
 MapSet openMaps(const Capture& capture);
 
@@ -42,15 +48,17 @@ MapSet openMaps(const Capture& capture);
 void makeRasters(MapSet& set, const geometry::TriangleMesh& mesh, std::span<const int> region,
                  std::optional<int> gutter);
 
-/// Classifies the texels of the rasters, which passes with a gutter but without masks ask for.
-void classifyTexels(MapSet& set);
+/// Makes rasters and classifies their texels, which passes with a gutter but without masks ask for.
+void layOutMaps(MapSet& set, const geometry::TriangleMesh& mesh, std::span<const int> region,
+                std::optional<int> gutter);
 
-/// Sets the fit weight of maps that share a set of weights: their metric weight, but 1 where that of each is 0.
-void assignFitWeights(std::span<OpenMap* const> maps);
+/// Texels of every map per weight cell, per axis, where the largest has `weight_scale`: all maps share one grid.
+/// Throws InputError: maps whose sizes do not share a grid at that scale.
+std::vector<int> weightScales(const MapSet& set, int weight_scale);
 
-/// Sets the weight scale of every map.
-/// weight_scale  of the largest map; the others' follow, since all maps share one weight grid
-/// Throws InputError: maps whose sizes do not share a weight grid at that scale.
-void assignWeightScales(MapSet& set, int weight_scale);
+/// The maps that share a set of weights: all of them, or each alone. Their fit weight is the metric weight, but 1 where
+/// that of every map of the group is 0. Pointers are into `set`. Throws what weightScales() throws.
+/// weight_scale  of the largest map
+std::vector<std::vector<GridMap>> groupMaps(MapSet& set, bool each_alone, int weight_scale);
 
 }  // namespace facezip::compress

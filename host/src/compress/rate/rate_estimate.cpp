@@ -13,26 +13,29 @@ constexpr int kScales[] = {4, 8, 16, 32};
 /// One in so many of the largest blocks is looked at. A face of 1024 x 1024 has 900 of them.
 constexpr int kStride = 7;
 
-bool mapsShareGrid(MapSet& maps, int scale) {
+/// None where the maps do not share a grid.
+std::optional<std::vector<int>> sharedScales(const MapSet& maps, int scale) {
   try {
-    assignWeightScales(maps, scale);
-    return true;
+    return weightScales(maps, scale);
   } catch (const InputError&) {
-    return false;
+    return std::nullopt;
   }
 }
 
 }  // namespace
 
-RateEstimate::RateEstimate(MapSet& maps, int expressions, int weight_maps)
-    : maps_(maps), expressions_(expressions), weight_maps_(weight_maps) {
+RateEstimate::RateEstimate(const MapSet& maps, int further_weight_maps)
+    : maps_(maps),
+      expressions_(maps.maps.front().samples->expressions()),
+      weight_maps_(expressions_ + further_weight_maps) {
   sides_.resize(maps.maps.size());
   for (const int scale : kScales) {
-    if (!mapsShareGrid(maps, scale)) continue;
+    const std::optional<std::vector<int>> of_maps = sharedScales(maps, scale);
+    if (!of_maps) continue;
     scales_.push_back(scale);
-    for (std::size_t m = 0; m < maps.maps.size(); ++m) sides_[m].push_back(maps.maps[m].weight_scale);
+    for (std::size_t m = 0; m < maps.maps.size(); ++m) sides_[m].push_back((*of_maps)[m]);
   }
-  if (scales_.empty()) assignWeightScales(maps, kScales[0]);  // says what does not fit
+  if (scales_.empty()) weightScales(maps, kScales[0]);  // says what does not fit
   for (std::size_t m = 0; m < maps.maps.size(); ++m) {
     const image::ImageShape& shape = maps.maps[m].samples->shape();
     const long side = sides_[m].back();

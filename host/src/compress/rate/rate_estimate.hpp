@@ -14,8 +14,8 @@ namespace facezip::compress {
 class RateEstimate {
  public:
   /// Finds the weight scales, of 4, 8, 16 and 32, that all maps can share. Throws InputError where there is none.
-  /// weight_maps  of each set: N, and what is to be added
-  RateEstimate(MapSet& maps, int expressions, int weight_maps);
+  /// further_weight_maps  of each set, beside those of the N expressions
+  RateEstimate(const MapSet& maps, int further_weight_maps);
 
   /// Looks at some of the texels of a band of map `m`; bands in rising order.
   void addBand(std::size_t m, const MapBand& band);

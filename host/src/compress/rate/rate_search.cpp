@@ -10,10 +10,8 @@
 
 namespace facezip::compress {
 
-RateSearch::RateSearch(const CompressOptions& options, MapSet& maps, int expressions, int weight_sets)
-    : options_(options),
-      weight_sets_(weight_sets),
-      estimate_(maps, expressions, expressions + options.further_weight_maps) {
+RateSearch::RateSearch(const CompressOptions& options, const MapSet& maps, int weight_sets)
+    : options_(options), weight_sets_(weight_sets), estimate_(maps, options.further_weight_maps) {
   // Sizes are known before any texel is.
   const RatePoint least = smallest();
   if (options.budget_bytes && least.bytes > *options.budget_bytes) {

@@ -16,7 +16,7 @@ namespace facezip::compress {
 class RateSearch {
  public:
   /// options, maps  must outlive this. Throws InputError if the smallest package is beyond the budget.
-  RateSearch(const CompressOptions& options, MapSet& maps, int expressions, int weight_sets);
+  RateSearch(const CompressOptions& options, const MapSet& maps, int weight_sets);
 
   /// To be shown the texels before the first choose().
   RateEstimate& estimate() { return estimate_; }
@@ -32,6 +32,9 @@ class RateSearch {
   /// True if what the last choose() led to misses the target.
   /// reached  RMSE of what was written
   bool misses(double reached);
+
+  /// What the last choose() gave.
+  const std::optional<RatePoint>& tried() const { return tried_; }
 
   /// Points worth trying, by size; empty before choose().
   const std::vector<RatePoint>& curve() const { return curve_; }

@@ -20,11 +20,11 @@ namespace {
 /// One map of the window on the device.
 class MapWindow {
  public:
-  MapWindow(device::DeviceContext& context, OpenMap& map, const WeightSpace& space)
+  MapWindow(device::DeviceContext& context, const GridMap& map, const WeightSpace& space)
       : map_(map),
         context_(context),
         textures_(space.textures),
-        window_(*map.samples),
+        window_(*map.map->samples),
         tiles_(context),
         samples_(context, "samples of a band", CL_MEM_READ_ONLY),
         differences_(context, "differences of a band"),
@@ -37,17 +37,17 @@ class MapWindow {
   /// Reads the texels that rows [free_begin, free_end) of cells reach into host memory. May run beside the device's
   /// work on the window before.
   void prepare(int free_begin, int free_end, const RefinementProblem& problem) {
-    const int height = map_.samples->shape().height;
+    const int height = map_.map->samples->shape().height;
     const int halo = windowHalo(map_.weight_scale);
     own_begin_ = std::min(free_begin * map_.weight_scale, height);
     own_end_ = std::min(free_end * map_.weight_scale, height);
     window_.moveTo(std::max(0, own_begin_ - halo), std::min(height, own_end_ + halo));
-    masks_ = problem.make_tiles(map_, window_.begin(), window_.end());
+    masks_ = problem.make_tiles(*map_.map, window_.begin(), window_.end());
   }
 
   /// Puts what was prepared on the device.
   void load() {
-    shape_ = bandShape(*map_.samples, window_.end() - window_.begin());
+    shape_ = bandShape(*map_.map->samples, window_.end() - window_.begin());
     first_row_ = window_.begin();
     const auto first_behind = [&](int row) {
       return static_cast<std::size_t>(
@@ -86,12 +86,12 @@ class MapWindow {
   std::vector<TextureRange> ranges() {
     return finder_.findPerTile(tiles_, shape_, fit_.textures(), first_own_tile_, end_of_own_tiles_);
   }
-  std::size_t planes() const { return static_cast<std::size_t>(textures_ * map_.samples->shape().channels); }
+  std::size_t planes() const { return static_cast<std::size_t>(textures_ * map_.map->samples->shape().channels); }
 
  private:
   GridBand band() const { return {tiles_, shape_, differences_.buffer(), first_row_, map_.weight_scale}; }
 
-  OpenMap& map_;
+  GridMap map_;
   device::DeviceContext& context_;
   int textures_;
   // What prepare() makes.
@@ -124,7 +124,9 @@ class Refiner {
         by_halves_(sweepsHalfCells(context, problem.maps)),
         result_(problem.space) {
     assert(problem.cell_energy > 0.0 && problem.window_rows > 0);
-    for (OpenMap* map : problem.maps) maps_.push_back(std::make_unique<MapWindow>(context, *map, problem.space));
+    for (const GridMap& map : problem.maps) {
+      maps_.push_back(std::make_unique<MapWindow>(context, map, problem.space));
+    }
     result_.ranges.resize(maps_.size());
     tile_ranges_.resize(maps_.size());
     result_.end_errors.resize(maps_.size(), 0.0);
@@ -163,7 +165,7 @@ class Refiner {
     WindowRows rows{begin, end, begin, end};
     for (std::size_t m = 0; m < maps_.size(); ++m) {
       maps_[m]->load();
-      const int scale = problem_.maps[m]->weight_scale;
+      const int scale = problem_.maps[m].weight_scale;
       const int halo = windowHalo(scale);
       const WindowRows reached =
           cellRowsOf(std::max(0, begin * scale - halo), end * scale + halo, scale, problem_.space.rows);
@@ -271,9 +273,9 @@ class Refiner {
 
 }  // namespace
 
-bool sweepsHalfCells(const device::DeviceContext& context, std::span<OpenMap* const> maps) {
+bool sweepsHalfCells(const device::DeviceContext& context, std::span<const GridMap> maps) {
   return context.resolve(device::KernelVariant::kAuto) == device::KernelVariant::kCpu &&
-         std::ranges::all_of(maps, [](const OpenMap* map) { return HalfCells::canHold(map->weight_scale); });
+         std::ranges::all_of(maps, [](const GridMap& map) { return HalfCells::canHold(map.weight_scale); });
 }
 
 Refinement refine(device::DeviceContext& context, const RefinementProblem& problem, const RefinementOptions& options,
@@ -285,9 +287,9 @@ float ridgeOf(const RefinementOptions& options, const WeightSpace& space) {
   return static_cast<float>(options.ridge * space.expressions / space.textures);
 }
 
-int windowRowStep(std::span<OpenMap* const> maps) {
+int windowRowStep(std::span<const GridMap> maps) {
   int step = 1;
-  for (const OpenMap* map : maps) step = std::lcm(step, kTileSide / std::gcd(kTileSide, map->weight_scale));
+  for (const GridMap& map : maps) step = std::lcm(step, kTileSide / std::gcd(kTileSide, map.weight_scale));
   return step;
 }
 

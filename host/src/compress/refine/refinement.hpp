@@ -34,8 +34,8 @@ struct RefinementOptions {
 /// What is refined. References must outlive the call.
 struct RefinementProblem {
   WeightSpace space;
-  const EncodedWeights& start;  ///< the paper's weights
-  std::span<OpenMap*> maps;     ///< that share the weights
+  const EncodedWeights& start;    ///< the paper's weights
+  std::span<const GridMap> maps;  ///< that share the weights
   /// Tiles of rows [begin, end) of a map, one mask each: raster::activeTiles().
   std::function<TileMasks(const OpenMap& map, int begin, int end)> make_tiles;
   double cell_energy = 0.0;  ///< mean of sum_p t |Delta_n|^2 over the covered cells and expressions; above 0
@@ -57,13 +57,13 @@ Refinement refine(device::DeviceContext& context, const RefinementProblem& probl
 
 /// True if the sweeps are made on half cells (half_cells.hpp) rather than texels: where they fit all maps' weight
 /// scales, on CPUs.
-bool sweepsHalfCells(const device::DeviceContext& context, std::span<OpenMap* const> maps);
+bool sweepsHalfCells(const device::DeviceContext& context, std::span<const GridMap> maps);
 
 /// The ridge of difference_fit for N expressions and C textures.
 float ridgeOf(const RefinementOptions& options, const WeightSpace& space);
 
 /// Windows begin and end at multiples of this many rows of cells, so that they do at whole tiles of every map.
-int windowRowStep(std::span<OpenMap* const> maps);
+int windowRowStep(std::span<const GridMap> maps);
 
 /// Texel rows beside a window's own that its cells reach into, a multiple of 16.
 int windowHalo(int weight_scale);

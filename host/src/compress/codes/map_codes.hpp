@@ -1,4 +1,4 @@
-// code_bits.hpp - whether 8-bit difference textures are enough, by the error that their rounding adds.
+// map_codes.hpp - the codes that hold the difference textures of a map: their bits, scales and offsets.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,14 @@
 #include "compress/refine/grid_weights.hpp"
 
 namespace facezip::compress {
+
+struct MapCodes {
+  int bits = 8;                           ///< of a code, 8 or 16
+  std::vector<TextureEncoding> encoding;  ///< C x channels
+};
+
+/// Codes of `bits` bits for textures that reach so far, C x channels.
+MapCodes codesOfBits(std::span<const TextureRange> ranges, int bits);
 
 /// Mean of W^2 of each weight channel over the cells that `used` marks and all expressions, as decoded; C values.
 std::vector<double> meanSquares(const EncodedWeights& weights, const WeightSpace& space,

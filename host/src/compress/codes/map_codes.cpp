@@ -1,8 +1,14 @@
-#include "compress/code_bits.hpp"
+#include "compress/codes/map_codes.hpp"
 
 #include <cassert>
 
 namespace facezip::compress {
+
+MapCodes codesOfBits(std::span<const TextureRange> ranges, int bits) {
+  MapCodes codes{bits, {}};
+  for (const TextureRange& range : ranges) codes.encoding.push_back(encodingFor(range, bits));
+  return codes;
+}
 
 std::vector<double> meanSquares(const EncodedWeights& weights, const WeightSpace& space,
                                 std::span<const std::uint8_t> used) {

@@ -1,0 +1,45 @@
+#include "compress/memory_plan.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "compress/band_plan.hpp"
+#include "compress/bands/map_bands.hpp"
+#include "compress/refine/refinement.hpp"
+
+namespace facezip::compress {
+
+/// What stays from pass to pass: weights of every set as codes, at the start and as written, one as halves while it
+/// is refined, the masks of the cells, the Gram matrices, and the classes of the texels of each raster.
+std::uint64_t MemoryPlan::residentBytes(const WeightSpace& space) const {
+  constexpr std::uint64_t kMasksOfACell = 8;
+  const std::uint64_t cells = static_cast<std::uint64_t>(space.columns) * static_cast<std::uint64_t>(space.rows);
+  std::set<const raster::TexelClasses*> classes;
+  std::uint64_t class_bytes = 0;
+  for (const OpenMap& map : maps_.maps) {
+    if (classes.insert(map.classes.get()).second) class_bytes += map.classes->bytes();
+  }
+  const auto weights = static_cast<std::uint64_t>(space.expressions) * static_cast<std::uint64_t>(space.textures);
+  return class_bytes + slots_.bytes(space.expressions) * weight_sets_ +
+         cells * (weights * (2 * weight_sets_ + 2) + kMasksOfACell * (sizeof(int) + sizeof(float)) + sizeof(int));
+}
+
+int MemoryPlan::bandRows(const PackageForm& form) const {
+  const std::uint64_t resident = residentBytes(weightSpace(maps_, form));
+  int rows = 0;
+  for (const OpenMap& map : maps_.maps) {
+    const BandCost cost = bandCost(bandShape(*map.samples, 0), form.differences, slots_.masks);
+    const int planned =
+        planBandRows(cost, map.samples->shape().height, run_.memory_bytes, resident, run_.context.info());
+    rows = rows == 0 ? planned : std::min(rows, planned);
+  }
+  return rows;
+}
+
+int MemoryPlan::windowRows(const PackageForm& form, std::span<const GridMap> group) const {
+  const WeightSpace space = weightSpace(maps_, form);
+  return planWindowRows(group, space, sweepsHalfCells(run_.context, group), run_.memory_bytes, residentBytes(space),
+                        run_.context.info());
+}
+
+}  // namespace facezip::compress

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "facezip/version.hpp"
 #include "io/read_file.hpp"
 #include "mesh/glb.hpp"
 #include "mesh/gltf_accessors.hpp"
@@ -142,7 +143,7 @@ PackageMesh parsePackageMesh(std::string glb, const std::string& file) {
   json found = meshJson(root, accessors, mesh);
   const json name = found["name"];
   const json skin = {{"metallicFactor", 0.0}, {"roughnessFactor", 0.6}};
-  mesh.document = {{"asset", {{"version", "2.0"}}},
+  mesh.document = {{"asset", {{"version", "2.0"}, {"generator", "facezip " FACEZIP_VERSION}}},
                    {"buffers", json::array({{{"byteLength", mesh.buffer.size()}}})},
                    {"bufferViews", accessors.viewsJson()},
                    {"accessors", accessors.accessorsJson()},

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "facezip/check.hpp"
 #include "facezip/view.hpp"
 #include "http_server.hpp"
 
@@ -23,6 +24,7 @@ std::string_view typeOf(std::string_view name) {
 }  // namespace
 
 void serveViewer(const Package& package, int port, const std::function<void(int port)>& started, Progress& progress) {
+  checkMesh(package);
   // Open for as long as they are served: what takes their place in the folder is another package, or a stranger's file.
   const std::vector<OpenPackageFile> opened = openPackageFiles(package);
   std::map<std::string, HttpFile> files;

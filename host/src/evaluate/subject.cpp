@@ -25,7 +25,7 @@ struct RiggedExpressions {
 };
 
 RiggedExpressions riggedExpressions(const Capture& capture, const Package& package, bool shapes) {
-  const Rig rig = openRig(package.directory());
+  const Rig rig = openRig(package);
   const auto indexIn = [](const std::vector<std::string>& names, const std::string& name) {
     const auto found = std::find(names.begin(), names.end(), name);
     return found == names.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - names.begin()));
@@ -104,7 +104,7 @@ Capture matchingCapture(const Capture& capture, const Package& package, bool rig
 
 Subject makeSubject(const Capture& capture, const Package& package, std::uint64_t memory_bytes, bool shapes,
                     const Device& device, Progress& progress) {
-  const bool rigged = isRig(package.directory());
+  const bool rigged = isRig(package);
   if (shapes && !rigged) {
     throw InputError({package.directory().string(), "--shapes", "a package that `facezip rig` made", "another", ""});
   }

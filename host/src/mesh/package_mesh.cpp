@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "facezip/version.hpp"
-#include "io/read_file.hpp"
+#include "io/folder.hpp"
+#include "io/memory_bound.hpp"
 #include "mesh/glb.hpp"
 #include "mesh/gltf_accessors.hpp"
 #include "package/json_field.hpp"
@@ -155,10 +156,13 @@ PackageMesh parsePackageMesh(std::string glb, const std::string& file) {
   return mesh;
 }
 
-PackageMesh readPackageMesh(const Package& package) {
-  const std::filesystem::path file = package.directory() / package.description().mesh_file;
-  return parsePackageMesh(io::readFile(file, "the mesh of the package", "write the package again", kMostMeshBytes),
-                          file.string());
+PackageMesh readPackageMesh(const Package& package, std::uint64_t memory_bytes) {
+  const std::string& name = package.description().mesh_file;
+  const std::string path = (package.directory() / name).string();
+  const InputFile file = package.folder().open(name, "the mesh of the package", "write the package again");
+  // The file, its text as values, and, where it is exported, three copies of its numbers.
+  io::requireMemory(5 * file.size(), memory_bytes, path);
+  return parsePackageMesh(file.read(kMostMeshBytes), path);
 }
 
 std::string packageMeshFile(const PackageMesh& mesh) { return joinGlb(mesh.document.dump(), mesh.buffer); }

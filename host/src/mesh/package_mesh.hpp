@@ -32,8 +32,8 @@ struct PackageMesh {
 /// Throws InputError that names `file`, the field as a JSON path, what was expected and what was found.
 PackageMesh parsePackageMesh(std::string glb, const std::string& file);
 
-/// Reads and checks the mesh of a package that has one. Throws InputError.
-PackageMesh readPackageMesh(const Package& package);
+/// Reads and checks the mesh of a package that has one. Throws InputError, where that needs more memory, too.
+PackageMesh readPackageMesh(const Package& package, std::uint64_t memory_bytes);
 
 /// The mesh as a binary glTF file of our own making: for readers that trust what they read.
 std::string packageMeshFile(const PackageMesh& mesh);

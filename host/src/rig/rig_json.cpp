@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <system_error>
 #include <unordered_map>
 
 #include "facezip/error.hpp"
 #include "facezip/version.hpp"
-#include "io/read_file.hpp"
+#include "io/folder.hpp"
 #include "package/json_field.hpp"
 #include "package/package_json.hpp"
 #include "package/safe_names.hpp"
@@ -127,17 +128,28 @@ Rig parseRig(const std::string& text, const std::string& file) {
 
 }  // namespace rig
 
-bool isRig(const std::filesystem::path& package) {
-  std::error_code error;
-  return std::filesystem::exists(package / rig::kRigFile, error);
+namespace {
+
+Rig readRig(const io::Folder& folder) {
+  const InputFile file = folder.open(rig::kRigFile, "rig.json of a package that `facezip rig` made");
+  Rig found = rig::parseRig(file.read(rig::kMostRigBytes), (folder.path() / rig::kRigFile).string());
+  found.directory = folder.path();
+  return found;
 }
 
+}  // namespace
+
+bool isRig(const Package& package) { return package.folder().has(rig::kRigFile); }
+
+Rig openRig(const Package& package) { return readRig(package.folder()); }
+
 Rig openRig(const std::filesystem::path& package) {
-  const std::filesystem::path file = package / rig::kRigFile;
-  Rig found = rig::parseRig(io::readFile(file, "rig.json of a package that `facezip rig` made", "", rig::kMostRigBytes),
-                            file.string());
-  found.directory = package;
-  return found;
+  try {
+    return readRig(io::Folder(package));
+  } catch (const std::system_error& error) {
+    throw InputError({(package / rig::kRigFile).string(), "", "rig.json of a package that `facezip rig` made",
+                      error.code().message(), ""});
+  }
 }
 
 }  // namespace facezip

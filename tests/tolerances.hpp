@@ -35,6 +35,14 @@ inline constexpr double kFitErrorRelative = 1e-5;
 // Normal equations of a cell, relative to its diagonal: at most 1024 products in float32, in runs of 16 and 16.
 inline constexpr double kSystemRelative = 1e-5;
 
+// Equations of a cell from those of its half cells, relative to all that these hold: their own error (kSolveRelative
+// times the condition of a half cell, tens in the tests), sixteen of them weighed.
+inline constexpr double kGatheredHalfCells = 1e-4;
+
+// Compress and stretch maps, for every expression, in 1/255: a weight of up to 1.5 that is interpolated in float32, off
+// by a few units of 2^-24, times a difference of up to 510.
+inline constexpr double kCompressStretch = 2e-3;
+
 // Grid weights after two sweeps: the system's error times the condition of a cell's block, which trust and smoothness
 // bound by about 1e4 in the tests.
 inline constexpr double kRelaxedWeight = 2e-2;
@@ -42,6 +50,9 @@ inline constexpr double kRelaxedWeight = 2e-2;
 // Frames of 8 bits, in steps for every unit of scale and of weight: -scale (zero + 32768) is a float32 of up to 1.5 *
 // 2^15, off by 2^-9 at most, and by less where the scale is below 1/2.
 inline constexpr double kFoldedCodeBias = 1.0 / 512.0;
+
+// Texels of BC4 blocks, in code units: float32 between two codes, half a unit of 2^-16 twice or so.
+inline constexpr double kBetweenEnds = 5e-5;
 
 // --- search on Gram matrices -----------------------------------------------------------------------------------------
 

@@ -21,9 +21,9 @@ std::uint64_t frameTilesBytes(const TextureShape& shape) {
 std::uint64_t weightBytes(const Package& package) {
   std::uint64_t kept = 0, largest = 0;
   for (const PackageWeights& set : package.weightSets()) {
-    const WeightGrid grid{set.tile_width, set.tile_height, static_cast<int>(package.expressions().size()), set.scale,
+    const WeightCodes grid{set.tile_width, set.tile_height, static_cast<int>(package.expressions().size()), set.scale,
                           set.offset};
-    const std::uint64_t floats = grid.blocks() * 16 * (static_cast<std::uint64_t>(grid.channels()) + 1) * sizeof(float);
+    const std::uint64_t floats = grid.blocks() * WeightCodes::kBlockCells * toSize(grid.channels() + 1) * sizeof(float);
     kept += grid.codeBytes() + floats;
     largest = std::max<std::uint64_t>(largest, grid.codeBytes());  // on the host, while a set is read
   }

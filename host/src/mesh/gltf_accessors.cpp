@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "io/counts.hpp"
 #include "package/package_json.hpp"
 
 namespace facezip::mesh {
@@ -24,7 +25,6 @@ constexpr std::size_t kMostViews = std::size_t{1} << 18;
 constexpr std::size_t kMostAccessors = std::size_t{1} << 17;
 constexpr int kLargestStride = 252;  // of glTF
 
-std::size_t toSize(int value) { return static_cast<std::size_t>(value); }
 int most(std::size_t bytes) { return static_cast<int>(std::min(bytes, toSize(kLargest))); }
 
 std::size_t bytesOf(int component_type) {

@@ -20,8 +20,7 @@ struct Arguments {
   int port = 8080;
 };
 
-void view(const Arguments& arguments, Progress& progress) {
-  const Package package = Package::open(arguments.package);
+void view(const Arguments& arguments, const Package& package, Progress& progress) {
   if (arguments.output) {
     writeViewer(package, *arguments.output, progress);
     fmt::print("Look at {}\n", (std::filesystem::path(*arguments.output) / "index.html").string());
@@ -51,7 +50,7 @@ void addViewCommand(CLI::App& app, const CommonOptions& common) {
   command->callback([arguments, &common] {
     TerminalProgress progress(common.quiet);
     const CancelOnSignal cancel(progress);
-    view(*arguments, progress);
+    withPackage(arguments->package, [&](const Package& package) { view(*arguments, package, progress); });
   });
 }
 

@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "blend/frame_writer.hpp"
 #include "image/image_file.hpp"
 #include "image/output_formats.hpp"
 #include "io/staged_directory.hpp"
@@ -16,6 +17,11 @@ namespace facezip {
 namespace fs = std::filesystem;
 
 void writeFrame(const fs::path& file, const PackageMap& map, std::span<const std::byte> frame) {
+  blend::writeFrameBy(file, map, [&](image::ImageWriter& writer) { writer.writeRows(frame, map.height); });
+}
+
+void blend::writeFrameBy(const fs::path& file, const PackageMap& map,
+                         const std::function<void(image::ImageWriter& writer)>& write) {
   const image::ImageShape shape = package::neutralShape(map);
   image::requireFormat(file, shape);
   io::createDirectories(fs::absolute(file).parent_path());
@@ -26,11 +32,11 @@ void writeFrame(const fs::path& file, const PackageMap& map, std::span<const std
   std::error_code error;
   try {
     image::ImageWriter writer(partial, shape, map.colour_space);
-    writer.writeRows(frame, map.height);
+    write(writer);
     writer.close();
     fs::rename(partial, target, error);
     if (error) throw OutputError(file, error.message());
-  } catch (const Error&) {
+  } catch (...) {
     fs::remove(partial, error);
     throw;
   }

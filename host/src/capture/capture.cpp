@@ -9,7 +9,7 @@
 
 #include "capture/capture_json.hpp"
 #include "facezip/geometry/obj_io.hpp"
-#include "image/image_format.hpp"
+#include "image/input_extensions.hpp"
 #include "package/package_json.hpp"
 #include "package/safe_names.hpp"
 
@@ -19,23 +19,9 @@ namespace {
 
 constexpr const char* kCaptureFile = "capture.json";
 
-/// Extensions of images that can be read, in lower case with the dot.
-const std::set<std::string>& imageExtensions() {
-  static const std::set<std::string> extensions = [] {
-    const std::vector<std::string> all = image::anyFormat().extensions();
-    return std::set<std::string>(all.begin(), all.end());
-  }();
-  return extensions;
-}
-
-bool isImage(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (extension != ".png" && !imageExtensions().contains(extension)) return false;  // PNG without OpenImageIO
-  // A name that starts with a dot is the desktop's or an unfinished copy, not a texture.
-  return path.filename().string().front() != '.';
-}
+/// By its name: what has one and is no file must not be left out, or its expression would be. A name that starts with a
+/// dot is the desktop's or an unfinished copy, not a texture.
+bool isImage(const fs::path& path) { return image::hasImageExtension(path) && path.filename().string().front() != '.'; }
 
 /// What a folder holds, by name.
 std::vector<fs::directory_entry> entriesOf(const fs::path& folder) {

@@ -21,6 +21,12 @@ std::string cacheKey(const cl::Device& device, const DeviceInfo& info, const std
                      options, source);
 }
 
+/// What every program is built with. clang describes the restrict of inlined functions by an intrinsic that Oclgrind
+/// does not know, and then refuses the kernel.
+std::string commonOptions(const DeviceInfo& info) {
+  return info.platform == "Oclgrind" ? "-cl-std=CL1.2 -D restrict=" : "-cl-std=CL1.2";
+}
+
 /// The program of a kept binary; none when the driver refuses it.
 std::optional<cl::Program> fromBinary(const cl::Context& context, const cl::Device& device,
                                       const std::vector<unsigned char>& binary, const std::string& options) {
@@ -76,7 +82,8 @@ cl::Kernel DeviceContext::kernel(std::string_view file_name, std::string_view na
   auto found = programs_.find(key);
   try {
     if (found == programs_.end()) {
-      found = programs_.emplace(key, buildProgram(file_name, fmt::format("-cl-std=CL1.2 {}", defines))).first;
+      found =
+          programs_.emplace(key, buildProgram(file_name, fmt::format("{} {}", commonOptions(info_), defines))).first;
     }
     return cl::Kernel(found->second, std::string(name).c_str());
   } catch (const cl::BuildError& error) {

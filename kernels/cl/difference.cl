@@ -1,20 +1,19 @@
 // difference.cl - differences of the expressions to the neutral, Delta_n = I_n - I_0 (FaceZip, Eq. 1 and 2), as tiles
 //   differences[tile][n][c][t] = (samples[n + 1][y][x][c] - samples[0][y][x][c]) * SAMPLE_UNIT,  0 outside the band
+//
 // NDRange  global {16, tiles, expressions}, local {16, 1, 1}: one work-item per row of 16 texels of a tile
 // Buffers  tiles        in   [tile] int2      column and row of tiles in the band
 //          samples      in   [1 + expressions][rows][width][CHANNELS] SAMPLE_T, image 0 is the neutral
 //          differences  out  [tile][expression][channel][256] DIFF_T, units of 1/255 of full scale
-// Defines  CHANNELS     1 to 4
-//          SAMPLE_T     uchar, ushort or float
-//          SAMPLE_UNIT  factor from a sample to 1/255 of full scale; not defined for uchar, whose differences stay integers
-//          DIFF_T       short for uchar samples (exact), float for all others
+// Defines  CHANNELS, DIFF_T  tiles.h
+//          SAMPLE_T          uchar, ushort or float (uchar)
+//          SAMPLE_UNIT       factor from a sample to 1/255 of full scale; not defined for uchar, whose differences stay
+//                            integers
 
-#ifndef CHANNELS
-#define CHANNELS 3
-#endif
+#include "tiles.h"
+
 #ifndef SAMPLE_T
 #define SAMPLE_T uchar
-#define DIFF_T short
 #endif
 
 #define SAMPLE16 JOIN(SAMPLE_T, 16)

@@ -2,6 +2,7 @@
 //   D = argmin sum_n |Delta_n - D^T w_n|^2 + ridge |D|^2,   w_n the bilinear weight map of expression n (FaceZip, Eq. 8)
 // A C x C system per texel, by Cholesky. With CODES the textures are rounded to their encoding while the system is
 // substituted back (Babai's nearest plane): a channel that is solved for after another makes up for that one's rounding.
+//
 // NDRange  global {256 / (LANES * ROWS), tiles}, local any
 // Buffers  tiles          in   [tile] int2        column and row of tiles in the band
 //          texel_weights  in   [tile][256] float  weight of a texel in every sum, 0 outside the covered texels
@@ -12,30 +13,31 @@
 //          textures       out  [tile][C][channel][256] float, units of 1/255
 //          errors         out  [tile][item] float2  sum over the item's covered texels of |Delta - D^T w|^2: times the
 //                                                   texel weight, and plain
-// Defines  CHANNELS, DIFF_T  as in difference.cl
-//          TEXTURES          C, 1 to 8
-//          EXPRESSIONS       N
-//          EXPRESSION_LANES  N rounded up as `weights` has it
-//          WEIGHT_SCALE      texels per cell
-//          LANES, ROWS       texels of a work-item: 16 columns by 16 rows on CPUs, one on GPUs
-//          CODES             if set, the largest code: 255 or 65535
+// Defines  CHANNELS, DIFF_T                         tiles.h
+//          TEXTURES, EXPRESSIONS, EXPRESSION_LANES  grid_weights.h
+//          WEIGHT_SCALE                             weight_grid.h
+//          LANES, ROWS  texels of a work-item: 16 columns by 16 rows on CPUs (16, 16), one on GPUs
+//          CODES        if set, the largest code: 255 or 65535
 // Sums     fixed order: expressions; rows and lanes of an item
 
+#include "cholesky.h"
+#include "tiles.h"
+#include "weight_grid.h"
+
+#ifndef ROWS
+#define ROWS 16
+#endif
+
+typedef VECTOR(int) ints;
+typedef VECTOR(DIFF_T) diffs;
 #if LANES == 1
-typedef int ints;
-typedef DIFF_T diffs;
-#define TO_FLOATS convert_float
 #define SUM_LANES(value) (value)
 #define CELL_COLUMNS 2
 #else
-typedef int16 ints;
-typedef JOIN(DIFF_T, 16) diffs;
-#define TO_FLOATS convert_float16
 #define SUM_LANES sum_of_16
 #define CELL_COLUMNS CELLS_OF_16
 #endif
 #define PLANE (TILE_TEXELS / LANES)  // vectors between the planes of a tile
-#define CELL_FLOATS (TEXTURES * EXPRESSION_LANES)
 
 #if LANES == 1
 // One weight at one texel. A work-item that has a single texel has no use for its neighbours' rows of cells.

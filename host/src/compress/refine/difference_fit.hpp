@@ -7,23 +7,13 @@
 #include <span>
 #include <vector>
 
-#include "compress/bands/device_tiles.hpp"
-#include "compress/bands/tile_band.hpp"
 #include "compress/codes/texture_encoding.hpp"
+#include "compress/refine/grid_band.hpp"
 #include "compress/refine/weight_window.hpp"
 #include "device/device_context.hpp"
 #include "device/pooled_buffer.hpp"
 
 namespace facezip::compress {
-
-/// A band of one map on the device, and where it lies on the weight grid. References must outlive what takes it.
-struct GridBand {
-  const DeviceTiles& tiles;  ///< one mask a tile: above 0 where difference textures are wanted
-  const BandShape& shape;
-  const cl::Buffer& differences;  ///< what computeDifferences() wrote for the same tiles and shape
-  int first_row = 0;              ///< of the band in the image
-  int weight_scale = 0;           ///< texels of this map per cell, 1 to 64
-};
 
 /// Squared error that is left in one tile, in (1/255)^2, summed over expressions and channels.
 struct FitError {
@@ -63,8 +53,5 @@ class DifferenceFit {
   device::PooledBuffer errors_;
   device::PooledBuffer encoding_;
 };
-
-/// "-D ..." of the kernels that know both texels and the weight grid.
-std::string gridDefines(const BandShape& shape, const WeightSpace& space, int weight_scale);
 
 }  // namespace facezip::compress

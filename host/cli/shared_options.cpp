@@ -3,6 +3,20 @@
 #include "option_types.hpp"
 
 namespace facezip::cli {
+namespace {
+
+BlockFormat parseTextureFormat(const std::string& name, const std::string& option) {
+  try {
+    return blockFormatOf(name, option);
+  } catch (const InputError& error) {
+    InputError::Parts parts = error.parts();
+    parts.expected = "png or " + parts.expected;
+    throw InputError(parts);
+  }
+}
+
+}  // namespace
+
 void addDeviceOption(CLI::App& command, std::string& selector) {
   command
       .add_option("--device", selector,
@@ -56,6 +70,17 @@ void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
       ->type_name("SIZE")
       ->excludes(differences)
       ->excludes(scale);
+  CLI::Option* format =
+      command
+          .add_option("--texture-format", arguments.texture_format,
+                      "png, or a block format that textures of 8 bits are fitted to: " + blockFormatNames())
+          ->type_name("FORMAT")
+          ->capture_default_str();
+  command
+      .add_option("--difference-format", arguments.difference_format,
+                  "Block format of the difference textures, where it is to be another")
+      ->type_name("FORMAT")
+      ->needs(format);
   command.add_flag("--weights-per-map", options.weights_per_map, "Give every map weights of its own");
   CLI::Option* radius =
       command
@@ -99,6 +124,12 @@ CompressOptions parseCompressOptions(const CompressArguments& arguments) {
     options.mask_radius = geometry::parseLength(arguments.mask_radius);
   } catch (const InputError& error) {
     throw error.in("--mask-radius " + arguments.mask_radius);
+  }
+  if (arguments.texture_format != "png") {
+    options.texture_format = parseTextureFormat(arguments.texture_format, "--texture-format");
+  }
+  if (!arguments.difference_format.empty()) {
+    options.difference_format = blockFormatOf(arguments.difference_format, "--difference-format");
   }
   options.target_rmse = arguments.target_rmse;
   if (!arguments.budget.empty()) options.budget_bytes = parseBytes("--budget", arguments.budget);

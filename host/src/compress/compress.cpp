@@ -36,11 +36,19 @@ std::uint64_t diskBytes(const fs::path& directory) {
   return bytes;
 }
 
-PackageForm formOf(const RatePoint& point) { return {point.differences, point.weight_scale, point.code_bits}; }
+PackageForm formOf(const RatePoint& point) {
+  return {point.differences, point.weight_scale, point.code_bits, std::nullopt};
+}
 
 PackageForm formOf(const CompressOptions& options) {
   const bool stretches = options.method == Method::kCompressStretch;
-  return {stretches ? kCompressStretchMaps : options.differences, options.weight_scale, std::nullopt};
+  PackageForm form{stretches ? kCompressStretchMaps : options.differences, options.weight_scale, std::nullopt,
+                   std::nullopt};
+  if (options.texture_format) {
+    form.blocks = TextureFormats{*options.texture_format,
+                                 options.difference_format.value_or(*options.texture_format)};
+  }
+  return form;
 }
 
 std::optional<RateSearch> searchRates(const CompressOptions& options, const MapSet& maps, std::size_t weight_sets) {

@@ -110,7 +110,7 @@ TEST_P(ImageFile, OpenImageIoAgrees) {
   };
   for (const char* colour_space : {"", "sRGB", "linear"}) {
     image::writeImage(file, image, colour_space);
-    EXPECT_EQ(readBy(*image::anyFormat().open(file)), image.samples) << colour_space;
+    EXPECT_EQ(readBy(*image::anyFormat().open(file, InputFile(file, "an image"))), image.samples) << colour_space;
     const auto output = image::anyFormat().create(file, image.shape, colour_space);
     output->writeRows(0, image.shape.height, image.samples);
     output->close();

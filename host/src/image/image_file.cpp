@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <cassert>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <utility>
 
@@ -35,27 +33,15 @@ void requireSaneFloats(const fs::path& path, const ImageShape& shape, int first_
   }
 }
 
-/// Each texture of a capture stays open, so that files may run out: that is no fault of the image.
-void requireReadable(const fs::path& path) {
-  if (std::FILE* file = std::fopen(path.c_str(), "rb")) {
-    std::fclose(file);
-    return;
-  }
-  if (errno == ENOENT) throw InputError({path.string(), "", "an image", "no such file", ""});
-  throw InputError({path.string(), "", "an image that can be opened", std::strerror(errno),
-                    errno == EMFILE ? "allow more open files (ulimit -n)" : ""});
-}
-
 }  // namespace
 
 std::string sampleTypeName(SampleType type) {
   return type == SampleType::kUint8 ? "8-bit" : type == SampleType::kUint16 ? "16-bit" : "float";
 }
 
-ImageReader::ImageReader(fs::path path) : path_(std::move(path)) {
-  requireReadable(path_);
-  input_ = openPng(path_);
-  if (!input_) input_ = anyFormat().open(path_);
+ImageReader::ImageReader(fs::path path) : path_(std::move(path)), file_(path_, "an image") {
+  input_ = openPng(path_, file_);
+  if (!input_) input_ = anyFormat().open(path_, file_);
   shape_ = input_->shape();
 }
 

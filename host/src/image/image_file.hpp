@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "facezip/input_file.hpp"
 #include "facezip/sample_type.hpp"
 
 namespace facezip::image {
@@ -43,7 +44,8 @@ struct ImageShape {
 /// Reads an image from top to bottom. Samples are raw: no colour conversion, no premultiplication by alpha.
 class ImageReader {
  public:
-  /// Opens `path`. Throws InputError if it is missing, unreadable or of a kind that OpenImageIO does not know.
+  /// Opens `path`. Throws InputError if it is missing, no regular file, unreadable or of a kind that OpenImageIO does
+  /// not know. The file stays open: what is renamed over it later is not read.
   explicit ImageReader(std::filesystem::path path);
   ~ImageReader();
   ImageReader(ImageReader&&) noexcept;
@@ -59,8 +61,9 @@ class ImageReader {
 
  private:
   std::filesystem::path path_;
+  InputFile file_;
   ImageShape shape_;
-  std::unique_ptr<SampleInput> input_;
+  std::unique_ptr<SampleInput> input_;  // reads file_: the first to go
 };
 
 /// Writes an image from top to bottom.

@@ -9,7 +9,6 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "image/image_file.hpp"
 
@@ -31,9 +30,11 @@ class SampleOutput {
   virtual void close() = 0;
 };
 
-/// Opens a PNG file whose samples are stored as they are: 8 or 16 bits, neither palette nor transparent colour, not
+/// Reads a PNG file whose samples are stored as they are: 8 or 16 bits, neither palette nor transparent colour, not
 /// interlaced. Null for every other file, which is left to anyFormat().
-std::unique_ptr<SampleInput> openPng(const std::filesystem::path& path);
+/// path  for messages
+/// file  must outlive what is returned
+std::unique_ptr<SampleInput> openPng(const std::filesystem::path& path, const InputFile& file);
 
 /// Creates a PNG file. Null for names that do not end in .png.
 /// Throws OutputError.
@@ -44,13 +45,13 @@ std::unique_ptr<SampleOutput> createPng(const std::filesystem::path& path, const
 class AnyFormat {
  public:
   virtual ~AnyFormat() = default;
+  /// path  says by its extension which reader is tried first
+  /// file  is read; must outlive what is returned
   /// Throws InputError.
-  virtual std::unique_ptr<SampleInput> open(const std::filesystem::path& path) = 0;
+  virtual std::unique_ptr<SampleInput> open(const std::filesystem::path& path, const InputFile& file) = 0;
   /// path, shape  that requireFormat() lets pass. Throws OutputError.
   virtual std::unique_ptr<SampleOutput> create(const std::filesystem::path& path, const ImageShape& shape,
                                                const std::string& colour_space) = 0;
-  /// Extensions of files that can be read, in lower case with the dot.
-  virtual std::vector<std::string> extensions() = 0;
 };
 
 /// OpenImageIO, as this program was linked: directly (linked_formats.cpp), or loaded when first asked for

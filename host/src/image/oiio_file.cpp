@@ -49,21 +49,45 @@ std::string reason(const std::string& text) {
   return line.empty() ? "OpenImageIO gives no reason" : line;
 }
 
-std::unique_ptr<OIIO::ImageInput> openInput(const fs::path& path) {
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
+    text.replace(at, what.size(), by);
+  }
+  return text;
+}
+
+/// The file by its descriptor, so that the one that was checked is read, now and when a reader opens it once more.
+std::unique_ptr<OIIO::ImageInput> openInput(const fs::path& path, const std::string& open_name) {
   OIIO::ImageSpec config;
   // Package and capture images carry four independent channels; premultiplying by the fourth would destroy them.
   config["oiio:UnassociatedAlpha"] = 1;
-  std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path.string(), &config);
-  if (!input) {
-    throw InputError({path.string(), "", "an image that OpenImageIO reads", reason(OIIO::geterror()),
+  // As OpenImageIO does with names: the reader of the extension first, since some formats cannot be told by what they
+  // hold, then whichever knows the content.
+  const std::string extension = path.extension().string();
+  const auto refuse = [&](const std::string& text) {
+    throw InputError({path.string(), "", "an image that OpenImageIO reads",
+                      replaced(reason(text), open_name, path.filename().string()),
                       "export it again, as PNG, TIFF or EXR"});
+  };
+  std::unique_ptr<OIIO::ImageInput> input;
+  if (extension.size() > 1) input = OIIO::ImageInput::create(extension.substr(1), /*do_open=*/false);
+  if (input && input->valid_file(open_name)) {
+    OIIO::ImageSpec ignored;
+    if (!input->open(open_name, ignored, config)) refuse(input->geterror());
+    return input;
   }
+  static_cast<void>(OIIO::geterror());  // of an extension that names no format
+  input = OIIO::ImageInput::open(open_name, &config);
+  if (!input) refuse(OIIO::geterror());
   return input;
 }
 
 class OiioInput : public SampleInput {
  public:
-  explicit OiioInput(const fs::path& path) : path_(path), file_(openInput(path)) {
+  OiioInput(const fs::path& path, const InputFile& file)
+      : path_(path),
+        open_name_(fmt::format("/proc/self/fd/{}", file.descriptor())),
+        file_(openInput(path, open_name_)) {
     const OIIO::ImageSpec& spec = file_->spec();
     shape_ = {spec.width, spec.height, spec.nchannels, sampleType(spec.format)};
     if (spec.depth > 1 || spec.deep) {
@@ -120,10 +144,12 @@ class OiioInput : public SampleInput {
 
   [[noreturn]] void damaged(int begin, int end) const {
     throw InputError({path_.string(), fmt::format("rows {} to {}", begin, end - 1), "readable image data",
-                      reason(file_->geterror()), "the file is truncated or damaged: replace it"});
+                      replaced(reason(file_->geterror()), open_name_, path_.filename().string()),
+                      "the file is truncated or damaged: replace it"});
   }
 
   fs::path path_;
+  std::string open_name_;
   std::unique_ptr<OIIO::ImageInput> file_;
   ImageShape shape_;
   // The row of tiles that holds the last row asked for: bands need not end where tiles do.
@@ -164,19 +190,13 @@ class OiioOutput : public SampleOutput {
 
 class OpenImageIo : public AnyFormat {
  public:
-  std::unique_ptr<SampleInput> open(const fs::path& path) override { return std::make_unique<OiioInput>(path); }
+  std::unique_ptr<SampleInput> open(const fs::path& path, const InputFile& file) override {
+    return std::make_unique<OiioInput>(path, file);
+  }
 
   std::unique_ptr<SampleOutput> create(const fs::path& path, const ImageShape& shape,
                                        const std::string& colour_space) override {
     return std::make_unique<OiioOutput>(path, shape, colour_space);
-  }
-
-  std::vector<std::string> extensions() override {
-    std::vector<std::string> all;
-    for (const auto& [format, list] : OIIO::get_extension_map()) {
-      for (const std::string& extension : list) all.push_back("." + extension);
-    }
-    return all;
   }
 };
 

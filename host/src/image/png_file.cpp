@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 #include <spng.h>
+#include <unistd.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -26,11 +28,57 @@ struct FreeContext {
 };
 using Context = std::unique_ptr<spng_ctx, FreeContext>;
 
-bool isPng(std::FILE* file) {
+/// The bytes of an open file from its first to its last. No stdio: that would take a second descriptor of every
+/// texture.
+class Source {
+ public:
+  explicit Source(const InputFile& file) : descriptor_(file.descriptor()) {}
+
+  void rewind() { offset_ = filled_ = next_ = 0; }
+
+  /// 0, or an error of libspng's.
+  int read(std::span<std::byte> out) {
+    while (!out.empty()) {
+      if (next_ == filled_) {
+        if (const int error = fill()) return error;
+      }
+      const std::size_t count = std::min(out.size(), filled_ - next_);
+      std::memcpy(out.data(), buffer_.data() + next_, count);
+      next_ += count;
+      out = out.subspan(count);
+    }
+    return 0;
+  }
+
+ private:
+  int fill() {
+    ssize_t got = 0;
+    do {
+      got = ::pread(descriptor_, buffer_.data(), buffer_.size(), offset_);
+    } while (got < 0 && errno == EINTR);
+    if (got <= 0) return got < 0 ? SPNG_IO_ERROR : SPNG_IO_EOF;
+    offset_ += got;
+    filled_ = static_cast<std::size_t>(got);
+    next_ = 0;
+    return 0;
+  }
+
+  int descriptor_;
+  off_t offset_ = 0;
+  std::size_t filled_ = 0;
+  std::size_t next_ = 0;
+  std::array<std::byte, 16384> buffer_;
+};
+
+int readSource(spng_ctx*, void* source, void* out, std::size_t bytes) {
+  return static_cast<Source*>(source)->read({static_cast<std::byte*>(out), bytes});
+}
+
+bool isPng(Source& source) {
   constexpr std::array<unsigned char, 8> kSignature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
   std::array<unsigned char, 8> begin = {};
-  const bool is_png = std::fread(begin.data(), 1, begin.size(), file) == begin.size() && begin == kSignature;
-  std::rewind(file);
+  const bool is_png = source.read(std::as_writable_bytes(std::span(begin))) == 0 && begin == kSignature;
+  source.rewind();
   return is_png;
 }
 
@@ -71,17 +119,17 @@ std::uint8_t colourTypeOf(int channels) {
 
 class PngInput : public SampleInput {
  public:
-  explicit PngInput(fs::path path) : path_(std::move(path)) {}
+  /// file  must outlive this object
+  PngInput(fs::path path, const InputFile& file) : path_(std::move(path)), source_(file) {}
 
   /// Reads all that stands before the samples. False where this is not a file for openPng(). Throws InputError for
   /// a damaged one: OpenImageIO would not read it either, and libpng prints a line of its own.
   bool open() {
-    context_.reset();
-    file_.reset(std::fopen(path_.c_str(), "rb"));
     context_.reset(spng_ctx_new(0));
+    source_.rewind();
     spng_ihdr header;
     spng_trns transparent;
-    if (!file_ || !context_ || !isPng(file_.get()) || spng_set_png_file(context_.get(), file_.get()) != 0 ||
+    if (!context_ || !isPng(source_) || spng_set_png_stream(context_.get(), readSource, &source_) != 0 ||
         // What is not needed for the samples may be damaged.
         spng_set_crc_action(context_.get(), SPNG_CRC_ERROR, SPNG_CRC_DISCARD) != 0 ||
         !succeeds(spng_get_ihdr(context_.get(), &header)) || succeeds(spng_get_trns(context_.get(), &transparent)) ||
@@ -129,8 +177,8 @@ class PngInput : public SampleInput {
   }
 
   fs::path path_;
-  File file_;
-  Context context_;  // goes before the file it reads
+  Source source_;
+  Context context_;  // reads source_: goes before it
   ImageShape shape_;
   int next_row_ = 0;
   std::vector<std::byte> unused_row_;
@@ -196,8 +244,8 @@ class PngOutput : public SampleOutput {
 
 }  // namespace
 
-std::unique_ptr<SampleInput> openPng(const fs::path& path) {
-  auto input = std::make_unique<PngInput>(path);
+std::unique_ptr<SampleInput> openPng(const fs::path& path, const InputFile& file) {
+  auto input = std::make_unique<PngInput>(path, file);
   return input->open() ? std::move(input) : nullptr;
 }
 

@@ -31,7 +31,10 @@ void blendFrames(const Arguments& arguments, Progress& progress) {
   const Package package = Package::open(arguments.package);
   const AnimationClip clip = readFrames(arguments, package);
   const FramePattern pattern(arguments.output, !arguments.animation.empty(), package.maps().size());
-  pattern.requireFits(package);
+  pattern.requireFits(package, clip.frames(),
+                      ProtectedPaths()
+                          .addFile(arguments.animation, "the clip that is read")
+                          .addFile(arguments.gain, "the gains that are read"));
   Blender blender(package, openDevice(arguments.device, &progress));
   if (!arguments.gain.empty()) blender.setGain(readGain(arguments.gain, package));
   std::vector<std::byte> frame;
@@ -43,7 +46,7 @@ void blendFrames(const Arguments& arguments, Progress& progress) {
       const PackageMap& map = package.maps()[m];
       frame.resize(map.frameBytes());
       blender.blend(static_cast<int>(m), frame);
-      writeFrame(pattern.file(f, map.name), map, frame);
+      writeFrame(pattern.file(f, map.name), map, frame, &progress);
     }
     progress.advance(static_cast<std::size_t>(f) + 1);
   }

@@ -30,7 +30,7 @@ void addExportCommand(CLI::App& app, const CommonOptions& common) {
     const std::vector<std::string> losses =
         exportPackage(Package::open(arguments->package), arguments->target, arguments->output, progress);
     for (const std::string& loss : losses) progress.note(loss);
-    fmt::print("Read {}\n", (std::filesystem::path(arguments->output) / "README.md").string());
+    say("Read {}\n", (std::filesystem::path(arguments->output) / "README.md").string());
   });
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "facezip/error.hpp"
+#include "facezip/protected_paths.hpp"
 #include "facezip/sample_type.hpp"
 
 namespace facezip {
@@ -122,5 +123,8 @@ class Package {
   PackageDescription description_;
   std::uint64_t bytes_on_disk_ = 0;
 };
+
+/// The package's directory.
+ProtectedPaths inputsOf(const Package& package);
 
 }  // namespace facezip

@@ -1,39 +1,43 @@
 #include "facezip/frame_file.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "image/image_file.hpp"
 #include "image/output_formats.hpp"
-#include "io/staged_directory.hpp"
+#include "io/write_file.hpp"
 #include "package/package_files.hpp"
 
 namespace facezip {
 namespace fs = std::filesystem;
 
-void writeFrame(const fs::path& file, const PackageMap& map, std::span<const std::byte> frame) {
-  const image::ImageShape shape = package::neutralShape(map);
+namespace {
+
+void writeWhole(const fs::path& file, const image::ImageShape& shape, const std::string& colour_space,
+                std::span<const std::byte> samples, Progress* progress) {
   image::requireFormat(file, shape);
   io::createDirectories(fs::absolute(file).parent_path());
-  const fs::path target = io::fileToReplace(file);
-  if (target.empty()) throw OutputError(file, "something that is no file is in the way", "choose another --output");
-  // The extension stays last: it decides the format.
-  const fs::path partial = target.parent_path() / fmt::format(".partial-{}-{}", ::getpid(), target.filename().string());
-  std::error_code error;
+  io::StagedFile staged(file, progress);
   try {
-    image::ImageWriter writer(partial, shape, map.colour_space);
-    writer.writeRows(frame, map.height);
+    image::ImageWriter writer(staged.path(), shape, colour_space);
+    writer.writeRows(samples, shape.height);
     writer.close();
-    fs::rename(partial, target, error);
-    if (error) throw OutputError(file, error.message());
-  } catch (const Error&) {
-    fs::remove(partial, error);
-    throw;
+  } catch (const OutputError& error) {
+    throw error.of(file);
   }
+  staged.commit();
+}
+
+}  // namespace
+
+void writeFrame(const fs::path& file, const PackageMap& map, std::span<const std::byte> frame, Progress* progress) {
+  writeWhole(file, package::neutralShape(map), map.colour_space, frame, progress);
+}
+
+void writePicture(const fs::path& file, int width, int height, std::span<const std::byte> samples) {
+  writeWhole(file, {width, height, 3, SampleType::kUint8}, "", samples, nullptr);
 }
 
 FramePattern::FramePattern(std::string pattern, bool numbered, std::size_t maps) : pattern_(std::move(pattern)) {
@@ -72,11 +76,11 @@ fs::path FramePattern::file(int frame, const std::string& map) const {
   return path;
 }
 
-void FramePattern::requireFits(const Package& package) const {
+void FramePattern::requireFits(const Package& package, int frames, ProtectedPaths inputs) const {
+  inputs.add(inputsOf(package));
   for (const PackageMap& map : package.maps()) {
-    const fs::path first = file(0, map.name);
-    image::requireFormat(first, package::neutralShape(map));
-    io::requireOutside(first, package.directory(), "the package itself");
+    image::requireFormat(file(0, map.name), package::neutralShape(map));
+    for (int frame = 0; frame < frames; ++frame) inputs.requireApart(file(frame, map.name));
   }
 }
 

@@ -5,11 +5,10 @@
 #include <bit>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <optional>
 
 #include "device/kernel_sources.hpp"
+#include "io/read_file.hpp"
 
 namespace facezip::device {
 
@@ -20,8 +19,9 @@ std::string kernelSource(std::string_view file_name) {
   }
   const auto find = [folder](std::string_view name) -> std::string {
     if (folder != nullptr) {
-      std::ifstream file(std::filesystem::path(folder) / name);
-      if (file) return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+      const std::filesystem::path file = std::filesystem::path(folder) / name;
+      std::error_code error;
+      if (std::filesystem::exists(file, error)) return io::readFile(file, "a kernel file");
     }
     const auto& embedded = embeddedKernelSources();
     const auto found = embedded.find(name);

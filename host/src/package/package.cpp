@@ -43,6 +43,10 @@ Package Package::open(const fs::path& directory) {
   return package;
 }
 
+ProtectedPaths inputsOf(const Package& package) {
+  return ProtectedPaths().add(package.directory(), "the package that is read");
+}
+
 int Package::mapIndex(const std::string& map_name) const {
   std::vector<std::string> names;
   for (std::size_t m = 0; m < maps().size(); ++m) {

@@ -76,15 +76,20 @@ class Rigging {
         options_(options),
         device_(device),
         progress_(progress),
-        staged_(package, package::footprint()) {}
+        staged_(package, package::footprint(), &progress) {}
 
   RigReport run() {
     read();
     fit();
-    // Compressed into the staging directory, which is empty: both appear together or not at all.
+    // Compressed within the staging directory: both appear together or not at all.
     CompressOptions compress = options_.compress;
     compress.further_weight_maps = static_cast<int>(template_.names.size());  // a budget holds the shapes' too
-    report_.compress = compressCapture(capture_, staged_.path(), compress, device_, progress_);
+    const fs::path compressed = staged_.path() / ".compressed";               // a name that no map has
+    report_.compress = compressCapture(capture_, compressed, compress, device_, progress_);
+    for (const fs::directory_entry& entry : fs::directory_iterator(compressed)) {
+      fs::rename(entry.path(), staged_.path() / entry.path().filename());
+    }
+    fs::remove(compressed);
     clock_.book("compressing");
     solveTextures();
     writeMeshes();
@@ -240,8 +245,15 @@ class Rigging {
 
 }  // namespace
 
+ProtectedPaths inputsOf(const Capture& capture, const fs::path& template_directory, const RigOptions& options) {
+  return inputsOf(capture, options.compress)
+      .add(template_directory, "the template that is read")
+      .addFile(options.guess, "the weights that are read");
+}
+
 RigReport rigCapture(const Capture& capture, const fs::path& template_directory, const fs::path& package,
                      const RigOptions& options, const Device& device, Progress& progress) {
+  inputsOf(capture, template_directory, options).requireApartFromFolder(package);
   return Rigging(capture, template_directory, package, options, device, progress).run();
 }
 

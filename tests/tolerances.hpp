@@ -43,6 +43,9 @@ inline constexpr double kRelaxedWeight = 2e-2;
 // 2^15, off by 2^-9 at most, and by less where the scale is below 1/2.
 inline constexpr double kFoldedCodeBias = 1.0 / 512.0;
 
+// Texels of BC4 blocks, in code units: float32 between two codes, half a unit of 2^-16 twice or so.
+inline constexpr double kBetweenEnds = 5e-5;
+
 // --- search on Gram matrices -----------------------------------------------------------------------------------------
 
 /// Seam costs, as a share of the largest squared length of a centred fragment of the pair. e^T H e has entries of H

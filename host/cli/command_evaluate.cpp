@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "cancel_on_signal.hpp"
 #include "commands.hpp"
@@ -15,6 +18,35 @@
 #include "terminal.hpp"
 
 namespace facezip::cli {
+namespace {
+
+std::vector<std::string> baselineNames() {
+  std::vector<std::string> names = allNames<Baseline>();
+  for (const std::string& method : allNames<Method>()) names.push_back(method);
+  names.emplace_back("none");
+  return names;
+}
+
+/// Those of the names that are names of a `Value`.
+template <typename Value>
+std::set<Value> chosen(const std::vector<std::string>& names) {
+  std::set<Value> values;
+  for (const std::string& name : names) {
+    if (const std::optional<Value> value = findNamed<Value>(name)) values.insert(*value);
+  }
+  return values;
+}
+
+/// Of the methods of the first pictures; the package is known by its method.
+std::vector<std::string> pictureTitles(const Evaluation& evaluation) {
+  std::vector<std::string> titles;
+  for (const std::string& method : evaluation.pictures.front().methods) {
+    titles.push_back(evaluationTitle(method == "package" ? evaluation.method : method));
+  }
+  return titles;
+}
+
+}  // namespace
 
 void addEvaluateCommand(CLI::App& app, const CommonOptions& common) {
   struct Arguments {
@@ -40,8 +72,7 @@ void addEvaluateCommand(CLI::App& app, const CommonOptions& common) {
                    "What to compare with: pca4, pca8, limit (best components of every block), no-permutation, paper, "
                    "closed-loop, refined, weights-per-map, compress-stretch (each compresses once more), or none")
       ->delimiter(',')
-      ->check(CLI::IsMember({"pca4", "pca8", "limit", "no-permutation", "paper", "closed-loop", "refined",
-                             "weights-per-map", "compress-stretch", "none"}))
+      ->check(CLI::IsMember(baselineNames()))
       ->capture_default_str();
   command->add_flag("--shapes", arguments->shapes,
                     "The capture's expressions are single shapes of the package's rig, by name");
@@ -63,27 +94,16 @@ void addEvaluateCommand(CLI::App& app, const CommonOptions& common) {
   command->add_option("--report", arguments->report, "Also write the figures as JSON (docs/reports.md)")
       ->type_name("FILE");
   command->callback([arguments, &common] {
-    const auto wanted = [&](const char* name) {
-      return std::find(arguments->baselines.begin(), arguments->baselines.end(), name) != arguments->baselines.end();
-    };
     if (!arguments->picture.empty() && std::filesystem::path(arguments->picture).extension() != ".png") {
       throw InputError({"--picture", "", "a file name that ends in .png", arguments->picture, ""});
     }
     EvaluateOptions options;
-    options.pca4 = wanted("pca4");
-    options.pca8 = wanted("pca8");
-    options.no_permutation = wanted("no-permutation");
-    options.paper = wanted("paper");
-    options.compress_stretch = wanted("compress-stretch");
-    options.closed_loop = wanted("closed-loop");
-    options.refined = wanted("refined");
-    options.weights_per_map = wanted("weights-per-map");
-    options.limit = wanted("limit");
+    options.methods = chosen<Method>(arguments->baselines);
+    options.baselines = chosen<Baseline>(arguments->baselines);
     options.ablation = arguments->ablation;
     options.shapes = arguments->shapes;
     options.blends = arguments->blends;
-    options.pictures = !arguments->picture.empty();
-    options.picture_map = arguments->picture_map;
+    if (!arguments->picture.empty()) options.pictures = PictureOptions{.map = arguments->picture_map};
     options.memory_bytes = parseBytes("--memory", arguments->memory);
     TerminalProgress progress(common.quiet);
     const CancelOnSignal cancel(progress);
@@ -96,7 +116,7 @@ void addEvaluateCommand(CLI::App& app, const CommonOptions& common) {
     const Evaluation evaluation =
         evaluatePackage(capture, package, options, openDevice(arguments->device, &progress), progress);
     if (!arguments->report.empty()) writeReport(arguments->report, toJson(evaluation), &progress);
-    if (!arguments->picture.empty()) writeErrorSheet(arguments->picture, evaluation);
+    if (!arguments->picture.empty()) writeErrorSheet(arguments->picture, evaluation, pictureTitles(evaluation));
     printEvaluation(evaluation);
   });
 }

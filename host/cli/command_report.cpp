@@ -46,10 +46,6 @@ void report(const Arguments& arguments, Progress& progress) {
   if (!arguments.compress_report.empty()) compressed = readCompressReport(arguments.compress_report);
   EvaluateOptions options;
   options.blends = 0;
-  options.pictures = true;
-  options.picture_map = arguments.map;
-  options.pictures_of_all_maps = true;
-  options.picture_baselines = false;
   options.mask_sweep = arguments.mask_sweep;
   options.memory_bytes = parseBytes("--memory", arguments.memory);
   const Package package = Package::open(arguments.package);
@@ -58,8 +54,9 @@ void report(const Arguments& arguments, Progress& progress) {
       arguments.output,
       inputsOf(capture).add(inputsOf(package)).addFile(arguments.compress_report, "the report that is read"),
       "--output");
-  options.picture_side =
-      pictureSide(package.expressions().size() * (arguments.map.empty() ? package.maps().size() : 1));
+  const std::size_t pictures = package.expressions().size() * (arguments.map.empty() ? package.maps().size() : 1);
+  options.pictures =
+      PictureOptions{.map = arguments.map, .all_maps = true, .paper_and_pca = false, .side = pictureSide(pictures)};
   const Device device = openDevice(arguments.device, &progress);
   const Evaluation evaluation = evaluatePackage(capture, package, options, device, progress);
   writeHtmlReport(arguments.output, package, evaluation, {device.info().name, compressed}, &progress);

@@ -61,7 +61,7 @@ void addRigCommand(CLI::App& app, const CommonOptions& common) {
       ->add_option("--texture-solve", arguments->texture_solve,
                    "Textures of the shapes: local (a wrinkle belongs to shapes that strain the skin there), damped, or "
                    "pseudo-inverse (the FaceZip paper's)")
-      ->check(CLI::IsMember({"local", "damped", "pseudo-inverse"}))
+      ->check(CLI::IsMember(allNames<TextureSolve>()))
       ->capture_default_str();
   command->add_flag("--head-motion", arguments->head_motion,
                     "Take the rigid motion of the head out of every expression's mesh");
@@ -86,9 +86,7 @@ void addRigCommand(CLI::App& app, const CommonOptions& common) {
                                                                     : geometry::ShapeTransfer::kBest;
     options.fit.head_motion = arguments->head_motion;
     options.guess = arguments->guess;
-    options.texture_solve = arguments->texture_solve == "damped"           ? TextureSolve::kDamped
-                            : arguments->texture_solve == "pseudo-inverse" ? TextureSolve::kPseudoInverse
-                                                                           : TextureSolve::kLocal;
+    options.texture_solve = *findNamed<TextureSolve>(arguments->texture_solve);  // CLI11 has checked it
     if (damping->count() > 0) options.texture_damping = arguments->texture_damping;
     TerminalProgress progress(common.quiet);
     const CancelOnSignal cancel(progress);

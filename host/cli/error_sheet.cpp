@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "method_titles.hpp"
+#include "facezip/evaluate.hpp"
 #include "sheet.hpp"
 
 namespace facezip::cli {
@@ -64,7 +64,8 @@ const Evaluation::Map& mapOf(const Evaluation& evaluation) {
 
 }  // namespace
 
-void writeErrorSheet(const std::filesystem::path& file, const Evaluation& evaluation) {
+void writeErrorSheet(const std::filesystem::path& file, const Evaluation& evaluation,
+                     const std::vector<std::string>& titles) {
   assert(!evaluation.pictures.empty());
   const ErrorPictures& pictures = evaluation.pictures.front();
   const auto methods = static_cast<int>(pictures.methods.size());
@@ -80,9 +81,8 @@ void writeErrorSheet(const std::filesystem::path& file, const Evaluation& evalua
     sheet.place(0, row, image(0), evaluation.expressions[n]);
     for (int m = 0; m < methods; ++m) {
       const auto at = static_cast<std::size_t>(m);
-      const std::string& key = pictures.methods[at];
-      const std::string title = methodTitle(key == "package" ? evaluation.method : key);
-      const double rmse = mapOf(evaluation).rmse.at(key).per_expression[n];
+      const std::string& title = titles[at];
+      const double rmse = mapOf(evaluation).rmse.at(pictures.methods[at]).per_expression[n];
       sheet.place(1 + m, row, image(at + 1), title);
       sheet.place(1 + methods + m, row, errorImage(pictures, pictures.errors[n][at]),
                   fmt::format("{}: {:.2f}", title, rmse));

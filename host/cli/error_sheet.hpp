@@ -2,13 +2,18 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "facezip/evaluate.hpp"
 
 namespace facezip::cli {
 
 /// Writes an image: a row for each expression with the captured texture, each method's and each method's errors, all in
-/// one false colour scale whose colour bar stands above. evaluation  with pictures. Throws OutputError.
-void writeErrorSheet(const std::filesystem::path& file, const Evaluation& evaluation);
+/// one false colour scale whose colour bar stands above. Throws OutputError.
+/// evaluation  with pictures
+/// titles      of the methods of its first pictures
+void writeErrorSheet(const std::filesystem::path& file, const Evaluation& evaluation,
+                     const std::vector<std::string>& titles);
 
 }  // namespace facezip::cli

@@ -29,8 +29,9 @@ void writeContactSheet(const std::filesystem::path& file, const Capture& capture
   entryOf<decltype(facezipWriteContactSheet)>("facezipWriteContactSheet")(file, capture, package, decoded);
 }
 
-void writeErrorSheet(const std::filesystem::path& file, const Evaluation& evaluation) {
-  entryOf<decltype(facezipWriteErrorSheet)>("facezipWriteErrorSheet")(file, evaluation);
+void writeErrorSheet(const std::filesystem::path& file, const Evaluation& evaluation,
+                     const std::vector<std::string>& titles) {
+  entryOf<decltype(facezipWriteErrorSheet)>("facezipWriteErrorSheet")(file, evaluation, titles);
 }
 
 }  // namespace facezip::cli

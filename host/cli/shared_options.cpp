@@ -3,23 +3,6 @@
 #include "option_types.hpp"
 
 namespace facezip::cli {
-namespace {
-
-PermutationSolver parseSolver(const std::string& name) {
-  if (name == "descent") return PermutationSolver::kDescent;
-  return name == "message-passing" ? PermutationSolver::kMessagePassing : PermutationSolver::kBest;
-}
-
-CompressOptions::Method parseMethod(const std::string& name) {
-  if (name == "closed-loop") return CompressOptions::Method::kClosedLoop;
-  if (name == "paper") return CompressOptions::Method::kPaper;
-  if (name == "compress-stretch") return CompressOptions::Method::kCompressStretch;
-  if (name == "no-permutation") return CompressOptions::Method::kNoPermutation;
-  return CompressOptions::Method::kRefined;
-}
-
-}  // namespace
-
 void addDeviceOption(CLI::App& command, std::string& selector) {
   command
       .add_option("--device", selector,
@@ -53,7 +36,7 @@ void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
       .add_option("--method", arguments.method,
                   "refined; closed-loop: the paper's weights, textures fitted to them; paper: the FaceZip method; "
                   "no-permutation: its ablation; compress-stretch: the two maps of Li et al. 2020 (needs every mesh)")
-      ->check(CLI::IsMember({"refined", "closed-loop", "paper", "no-permutation", "compress-stretch"}))
+      ->check(CLI::IsMember(allNames<Method>()))
       ->capture_default_str();
   CLI::Option* differences = command
                                  .add_option("--differences", options.differences,
@@ -92,7 +75,7 @@ void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
   command
       .add_option("--permutation-solver", arguments.permutation_solver,
                   "descent: the paper's, from random starts; message-passing: with its bound; best: the better of both")
-      ->check(CLI::IsMember({"best", "descent", "message-passing"}))
+      ->check(CLI::IsMember(allNames<PermutationSolver>()))
       ->capture_default_str();
   command.add_option("--restarts", options.restarts, "Random starts of the permutation search by descent")
       ->transform(wholeNumber())
@@ -121,8 +104,8 @@ void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
 
 CompressOptions parseCompressOptions(const CompressArguments& arguments) {
   CompressOptions options = arguments.options;
-  options.method = parseMethod(arguments.method);
-  options.permutation_solver = parseSolver(arguments.permutation_solver);
+  options.method = *findNamed<Method>(arguments.method);  // CLI11 has checked it
+  options.permutation_solver = *findNamed<PermutationSolver>(arguments.permutation_solver);
   try {
     options.mask_radius = geometry::parseLength(arguments.mask_radius);
   } catch (const InputError& error) {

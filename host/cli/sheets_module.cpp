@@ -10,6 +10,7 @@ FACEZIP_EXPORT void facezipWriteContactSheet(const std::filesystem::path& file, 
   facezip::cli::writeContactSheet(file, capture, package, decoded);
 }
 
-FACEZIP_EXPORT void facezipWriteErrorSheet(const std::filesystem::path& file, const facezip::Evaluation& evaluation) {
-  facezip::cli::writeErrorSheet(file, evaluation);
+FACEZIP_EXPORT void facezipWriteErrorSheet(const std::filesystem::path& file, const facezip::Evaluation& evaluation,
+                                           const std::vector<std::string>& titles) {
+  facezip::cli::writeErrorSheet(file, evaluation, titles);
 }

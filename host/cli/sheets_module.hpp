@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "facezip/capture.hpp"
 #include "facezip/evaluate.hpp"
@@ -10,5 +12,6 @@
 extern "C" {
 void facezipWriteContactSheet(const std::filesystem::path& file, const facezip::Capture& capture,
                               const facezip::Package& package, const std::filesystem::path& decoded);
-void facezipWriteErrorSheet(const std::filesystem::path& file, const facezip::Evaluation& evaluation);
+void facezipWriteErrorSheet(const std::filesystem::path& file, const facezip::Evaluation& evaluation,
+                            const std::vector<std::string>& titles);
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <map>
 
-#include "method_titles.hpp"
 #include "option_types.hpp"
 #include "terminal.hpp"
 
@@ -23,7 +22,7 @@ void printSeconds(const std::vector<std::pair<std::string, double>>& seconds) {
 /// Methods that have a column of their own: the package's own method is the package.
 std::vector<std::string> columnsOf(const Evaluation& evaluation, const Evaluation::Map& map) {
   std::vector<std::string> columns;
-  for (const auto& [key, title] : methodTitles()) {
+  for (const auto& [key, title] : evaluationTitles()) {
     if (map.rmse.contains(key) && key != evaluation.method) columns.push_back(key);
   }
   return columns;
@@ -33,7 +32,7 @@ void printErrors(const Evaluation& evaluation, const Evaluation::Map& map) {
   say("\n{}: RMSE over the covered texels, 0..255 (difference to the neutral: {:.3f})\n{:<34}", map.name,
       map.rms_difference, "expression");
   const std::vector<std::string> columns = columnsOf(evaluation, map);
-  for (const std::string& key : columns) say("{:>14}", methodTitle(key));
+  for (const std::string& key : columns) say("{:>14}", evaluationTitle(key));
   for (std::size_t n = 0; n < evaluation.expressions.size(); ++n) {
     say("\n{:<34}", evaluation.expressions[n]);
     for (const std::string& key : columns) {
@@ -58,7 +57,7 @@ void printDetail(const Evaluation& evaluation, const Evaluation::Map& map) {
   }
   for (const std::string& key : columnsOf(evaluation, map)) {
     const auto found = map.detail.find(key);
-    if (found != map.detail.end()) printTexelErrors("all, " + methodTitle(key), found->second.pooled);
+    if (found != map.detail.end()) printTexelErrors("all, " + evaluationTitle(key), found->second.pooled);
   }
 }
 
@@ -69,7 +68,7 @@ void printAngles(const Evaluation& evaluation, const Evaluation::Map& map) {
     const auto found = map.angles.find(key);
     if (found == map.angles.end()) continue;
     const NormalAngles& angles = found->second.pooled;
-    say("{:<34}{:>14.3f}{:>14.2f}{:>14.2f}\n", methodTitle(key), angles.mean, angles.p99, angles.max);
+    say("{:<34}{:>14.3f}{:>14.2f}{:>14.2f}\n", evaluationTitle(key), angles.mean, angles.p99, angles.max);
   }
 }
 
@@ -80,7 +79,7 @@ void printBlends(const Evaluation& evaluation, const Evaluation::Map& map) {
   for (const std::string& key : columnsOf(evaluation, map)) {
     const auto found = map.blends.find(key);
     if (found == map.blends.end()) continue;
-    say("{:<34}{:>14.3f}{:>12.0f} %\n", methodTitle(key), found->second.rmse,
+    say("{:<34}{:>14.3f}{:>12.0f} %\n", evaluationTitle(key), found->second.rmse,
         100.0 * found->second.largest_share_of_bound);
   }
 }
@@ -94,7 +93,7 @@ void printAblation(const std::string& title, const std::map<std::string, std::ma
   if (values.empty()) return;
   say("\n{:<34}", title);
   for (const int differences : kAblatedDifferences) say("{:>14}", fmt::format("C = {}", differences));
-  for (const auto& [key, name] : methodTitles()) {
+  for (const auto& [key, name] : evaluationTitles()) {
     const auto row = values.find(key);
     if (row == values.end()) continue;
     say("\n{:<34}", name);
@@ -107,13 +106,13 @@ void printAblation(const std::string& title, const std::map<std::string, std::ma
 }
 
 void printBytes(const Evaluation& evaluation) {
-  static const std::vector<std::pair<std::string, std::string>> rows = {
-      {"package", "package"},  {"weights_per_map", "own weights"},        {"pca4", "PCA(4)"}, {"pca8", "PCA(8)"},
-      {"raw", "all textures"}, {"package_disk", "package, files on disk"}};
+  std::vector<std::pair<std::string, std::string>> rows = evaluationTitles();
+  rows.insert(rows.end(), {{"raw", "all textures"}, {"package_disk", "package, files on disk"}});
   say("\n{:<34}{:>14}\n", "run-time memory", "");
   for (const auto& [key, title] : rows) {
     const auto found = evaluation.bytes.find(key);
-    if (found != evaluation.bytes.end()) say("{:<34}{:>14}\n", title, formatMegabytes(found->second));
+    if (found == evaluation.bytes.end() || key == evaluation.method) continue;
+    say("{:<34}{:>14}\n", title, formatMegabytes(found->second));
   }
 }
 
@@ -171,7 +170,7 @@ void printCompressReport(const CompressReport& report) {
 }
 
 void printEvaluation(const Evaluation& evaluation) {
-  say("package: {} method, C = {}\n", methodTitle(evaluation.method), evaluation.differences);
+  say("package: {} method, C = {}\n", evaluationTitle(evaluation.method), evaluation.differences);
   for (const Evaluation::Map& map : evaluation.maps) {
     printErrors(evaluation, map);
     printDetail(evaluation, map);

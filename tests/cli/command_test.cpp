@@ -190,7 +190,7 @@ TEST_F(Command, EvaluateReportsWhatTheSchemaSays) {
   for (const char* map : {"albedo", "normal"}) {
     EXPECT_GT(report["maps"][map]["rmse"]["package"].get<double>(), 0.0);
     EXPECT_GT(report["maps"][map]["rmse"]["pca4"].get<double>(), 0.0);
-    for (const char* method : {"package", "pca4", "pca8", "no_permutation"}) {
+    for (const char* method : {"package", "pca4", "pca8", "no-permutation"}) {
       EXPECT_GE(report["maps"][map]["rmse"][method].get<double>(), 0.0);
       for (int n = 0; n < 6; ++n) {
         EXPECT_GE(report["maps"][map]["per_expression"][test::smallExpressionName(n)][method].get<double>(), 0.0);
@@ -227,7 +227,7 @@ TEST_F(Command, EvaluateReportsTexelsAnglesAndBlends) {
   for (const char* map : {"albedo", "normal"}) {
     const json& entry = report["maps"][map];
     EXPECT_EQ(entry["rmse"][method], entry["rmse"]["package"]);
-    for (const std::string& key : {std::string("package"), method, std::string("no_permutation")}) {
+    for (const std::string& key : {std::string("package"), method, std::string("no-permutation")}) {
       EXPECT_EQ(entry["detail"]["e01"][key]["rmse"], entry["per_expression"]["e01"][key]);
       EXPECT_GT(entry["detail_pooled"][key]["psnr"].get<double>(), 20.0);
       EXPECT_GE(entry["detail_pooled"][key]["max"].get<double>(), entry["detail_pooled"][key]["p99"].get<double>());
@@ -249,7 +249,7 @@ TEST_F(Command, EvaluateAblates) {
   ASSERT_EQ(result.exit_code, 0) << result.error;
   EXPECT_THAT(result.out, HasSubstr("C = 3"));
   const json report = readJson(out / "e.json");
-  for (const char* method : {"refined", "closed_loop", "paper", "no_permutation", "limit", "pca"}) {
+  for (const char* method : {"refined", "closed-loop", "paper", "no-permutation", "limit", "pca"}) {
     for (const char* differences : {"1", "2", "3", "4"}) {
       const json& entry = report["maps"]["normal"]["ablation"][method][differences];
       EXPECT_GT(entry["rmse"].get<double>(), 0.0) << method;
@@ -269,9 +269,9 @@ TEST_F(Command, EvaluateComparesWithWeightsPerMap) {
   EXPECT_THAT(result.out, HasSubstr("own weights"));
   const json report = readJson(out / "e.json");
   // Both maps of this capture change alike: a second set of weights costs 6 maps of 10 x 10 x 4 bytes.
-  EXPECT_EQ(report["bytes"]["weights_per_map"].get<int>(), report["bytes"]["package"].get<int>() + 6 * 10 * 10 * 4);
+  EXPECT_EQ(report["bytes"]["weights-per-map"].get<int>(), report["bytes"]["package"].get<int>() + 6 * 10 * 10 * 4);
   for (const char* map : {"albedo", "normal"}) {
-    EXPECT_GT(report["maps"][map]["rmse"]["weights_per_map"].get<double>(), 0.0);
+    EXPECT_GT(report["maps"][map]["rmse"]["weights-per-map"].get<double>(), 0.0);
   }
 }
 

@@ -98,7 +98,7 @@ TEST(CompressStretchMethod, MakesAPackageThatBlendsLikeAnyOther) {
   const test::TemporaryDirectory folder;
   test::writeRigCapture(folder.path());
   CompressOptions options;
-  options.method = CompressOptions::Method::kCompressStretch;
+  options.method = Method::kCompressStretch;
   options.unit = "m";
   options.mask_radius = geometry::parseLength("5cm");
   Progress progress;
@@ -123,7 +123,7 @@ TEST(CompressStretchMethod, NeedsEveryMesh) {
   test::writeRigCapture(folder.path());
   std::filesystem::remove(folder / "capture/expressions/r2.obj");
   CompressOptions options;
-  options.method = CompressOptions::Method::kCompressStretch;
+  options.method = Method::kCompressStretch;
   options.unit = "m";
   options.mask_radius = geometry::parseLength("5cm");
   Progress progress;

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 CompressOptions smallOptions() {
   CompressOptions options;
-  options.method = CompressOptions::Method::kPaper;
+  options.method = Method::kPaper;
   options.unit = "m";
   options.mask_radius = {5.0, geometry::LengthUnit::kCentimetre};
   options.restarts = 10;
@@ -32,8 +32,7 @@ CompressOptions smallOptions() {
 /// Without what compresses again.
 EvaluateOptions quickOptions() {
   EvaluateOptions options;
-  options.no_permutation = false;
-  options.paper = false;
+  options.methods = {};
   return options;
 }
 
@@ -56,7 +55,7 @@ class Evaluating : public testing::Test {
 TEST_F(Evaluating, ThePackagesOwnMethodIsThePackage) {
   const Package package = compress({.expressions = 7});
   EvaluateOptions options;  // the paper's method is asked for, and not compressed again
-  options.no_permutation = false;
+  options.methods = {Method::kPaper};
   const Evaluation evaluation = evaluate(package, options);
   EXPECT_EQ(evaluation.method, "paper");
   EXPECT_EQ(evaluation.differences, 4);
@@ -72,13 +71,13 @@ TEST_F(Evaluating, OtherMethodsAreCompressedWithTheRecordedOptions) {
   compression.differences = 2;
   const Package package = compress({.expressions = 7}, compression);
   EvaluateOptions options = quickOptions();
-  options.no_permutation = true;
+  options.methods.insert(Method::kNoPermutation);
   const Evaluation evaluation = evaluate(package, options);
-  compression.method = CompressOptions::Method::kNoPermutation;
+  compression.method = Method::kNoPermutation;
   compressCapture(openCapture(folder_ / "c"), folder_ / "p", compression, testDevice(), progress_);
   const Evaluation direct = evaluate(Package::open(folder_ / "p"), quickOptions());
-  EXPECT_EQ(evaluation.maps[0].rmse.at("no_permutation").pooled, direct.maps[0].rmse.at("package").pooled);
-  EXPECT_EQ(evaluation.bytes.at("no_permutation"), direct.bytes.at("package"));
+  EXPECT_EQ(evaluation.maps[0].rmse.at("no-permutation").pooled, direct.maps[0].rmse.at("package").pooled);
+  EXPECT_EQ(evaluation.bytes.at("no-permutation"), direct.bytes.at("package"));
 }
 
 // The normals of this capture follow expressions that its albedo does not.
@@ -90,36 +89,36 @@ TEST_F(Evaluating, WeightsPerMapShowWhatSharingThemCosts) {
                      "normal");
   const Capture capture = openCapture(folder_ / "c");
   CompressOptions compression = smallOptions();
-  compression.method = CompressOptions::Method::kRefined;
+  compression.method = Method::kRefined;
   compression.differences = 3;
   compressCapture(capture, folder_ / "p", compression, testDevice(), progress_);
   const Package shared = Package::open(folder_ / "p");
   EvaluateOptions options = quickOptions();
-  EXPECT_FALSE(evaluate(shared, options).bytes.contains("weights_per_map")) << "only where it is asked for";
-  options.weights_per_map = true;
+  EXPECT_FALSE(evaluate(shared, options).bytes.contains("weights-per-map")) << "only where it is asked for";
+  options.baselines.insert(Baseline::kWeightsPerMap);
   const Evaluation evaluation = evaluate(shared, options);
-  EXPECT_EQ(evaluation.bytes.at("weights_per_map"), evaluation.bytes.at("package") + 8u * 8 * 8 * 3);
+  EXPECT_EQ(evaluation.bytes.at("weights-per-map"), evaluation.bytes.at("package") + 8u * 8 * 8 * 3);
 
   compression.weights_per_map = true;
   compressCapture(capture, folder_ / "own", compression, testDevice(), progress_);
   const Evaluation direct = evaluate(Package::open(folder_ / "own"), options);
   for (std::size_t m = 0; m < 2; ++m) {
     const auto& rmse = evaluation.maps[m].rmse;
-    EXPECT_EQ(rmse.at("weights_per_map").per_expression, direct.maps[m].rmse.at("package").per_expression);
-    EXPECT_LT(rmse.at("weights_per_map").pooled, rmse.at("package").pooled);
-    EXPECT_EQ(direct.maps[m].rmse.at("weights_per_map").pooled, direct.maps[m].rmse.at("package").pooled);
-    EXPECT_TRUE(evaluation.maps[m].blends.contains("weights_per_map"));
+    EXPECT_EQ(rmse.at("weights-per-map").per_expression, direct.maps[m].rmse.at("package").per_expression);
+    EXPECT_LT(rmse.at("weights-per-map").pooled, rmse.at("package").pooled);
+    EXPECT_EQ(direct.maps[m].rmse.at("weights-per-map").pooled, direct.maps[m].rmse.at("package").pooled);
+    EXPECT_TRUE(evaluation.maps[m].blends.contains("weights-per-map"));
   }
-  EXPECT_EQ(direct.bytes.at("weights_per_map"), direct.bytes.at("package"));
+  EXPECT_EQ(direct.bytes.at("weights-per-map"), direct.bytes.at("package"));
   for (const auto& [stage, seconds] : direct.seconds) EXPECT_EQ(stage.find("compressing"), std::string::npos);
 }
 
 TEST_F(Evaluating, OneMapHasWeightsOfItsOwn) {
   const Package package = compress({.expressions = 5});
   EvaluateOptions options = quickOptions();
-  options.weights_per_map = true;
+  options.baselines.insert(Baseline::kWeightsPerMap);
   const Evaluation evaluation = evaluate(package, options);
-  EXPECT_EQ(evaluation.maps[0].rmse.at("weights_per_map").pooled, evaluation.maps[0].rmse.at("package").pooled);
+  EXPECT_EQ(evaluation.maps[0].rmse.at("weights-per-map").pooled, evaluation.maps[0].rmse.at("package").pooled);
   for (const auto& [stage, seconds] : evaluation.seconds) EXPECT_EQ(stage.find("compressing"), std::string::npos);
 }
 
@@ -169,19 +168,19 @@ TEST_F(Evaluating, NormalMapsAreJudgedByAngle) {
 TEST_F(Evaluating, BlendsStayWithinWhatLinearityAllows) {
   const Package package = compress({.expressions = 10});
   EvaluateOptions options = quickOptions();
-  options.no_permutation = true;
+  options.methods.insert(Method::kNoPermutation);
   const Evaluation evaluation = evaluate(package, options);
   ASSERT_EQ(evaluation.blend_weights.size(), 16u);
   const Evaluation::Map& map = evaluation.maps[0];
-  for (const char* method : {"package", "no_permutation"}) {
+  for (const char* method : {"package", "no-permutation"}) {
     const BlendErrors& blends = map.blends.at(method);
     EXPECT_GT(blends.rmse, 0.0);
     EXPECT_LE(blends.largest_share_of_bound, 1.0 + 1e-3) << method;
     EXPECT_GT(blends.largest_share_of_bound, 0.3) << method;
   }
   // Blends keep the order and about the ratio of the methods at single expressions.
-  const double corners = map.rmse.at("no_permutation").pooled / map.rmse.at("package").pooled;
-  const double blends = map.blends.at("no_permutation").rmse / map.blends.at("package").rmse;
+  const double corners = map.rmse.at("no-permutation").pooled / map.rmse.at("package").pooled;
+  const double blends = map.blends.at("no-permutation").rmse / map.blends.at("package").rmse;
   EXPECT_GT(blends, 1.0);
   EXPECT_NEAR(std::log(blends / corners), 0.0, std::log(1.5));
 }
@@ -208,7 +207,7 @@ TEST_F(Evaluating, AblationHasEveryMethodAtEveryNumberOfTextures) {
   options.ablation = true;
   const Evaluation evaluation = evaluate(package, options);
   for (const Evaluation::Map& map : evaluation.maps) {
-    for (const char* method : {"no_permutation", "paper", "closed_loop", "refined", "limit", "pca"}) {
+    for (const char* method : {"no-permutation", "paper", "closed-loop", "refined", "limit", "pca"}) {
       const auto& by_differences = map.ablation.at(method);
       ASSERT_EQ(by_differences.size(), std::string(method) == "pca" ? 5u : 4u) << method;
       EXPECT_LT(by_differences.at(4), by_differences.at(1)) << method;
@@ -226,8 +225,7 @@ TEST_F(Evaluating, AblationHasEveryMethodAtEveryNumberOfTextures) {
 TEST_F(Evaluating, PicturesShowWhatWasCapturedAndDecoded) {
   const Package package = compress({.expressions = 6, .maps = {"albedo", "normal"}});
   EvaluateOptions options = quickOptions();
-  options.pictures = true;
-  options.picture_map = "normal";
+  options.pictures = PictureOptions{.map = "normal"};
   const Evaluation evaluation = evaluate(package, options);
   ASSERT_EQ(evaluation.pictures.size(), 1u);
   const ErrorPictures& pictures = evaluation.pictures.front();
@@ -256,9 +254,7 @@ TEST_F(Evaluating, PicturesShowWhatWasCapturedAndDecoded) {
 TEST_F(Evaluating, PicturesOfAllMapsInTheSizeAskedForWithoutBaselines) {
   const Package package = compress({.expressions = 2, .maps = {"albedo", "normal"}});
   EvaluateOptions options = quickOptions();
-  options.pictures = options.pictures_of_all_maps = true;
-  options.picture_baselines = false;
-  options.picture_side = 40;
+  options.pictures = PictureOptions{.all_maps = true, .paper_and_pca = false, .side = 40};
   const Evaluation evaluation = evaluate(package, options);
   ASSERT_EQ(evaluation.pictures.size(), 2u);
   EXPECT_EQ(evaluation.pictures[1].map, "normal");
@@ -269,12 +265,12 @@ TEST_F(Evaluating, PicturesOfAllMapsInTheSizeAskedForWithoutBaselines) {
 TEST_F(Evaluating, PicturesOfLargeMapsAreAverages) {
   const Package package = compress({.expressions = 2, .width = 600, .height = 300, .channels = 1});
   EvaluateOptions options = quickOptions();
-  options.pictures = true;
+  options.pictures = PictureOptions{};
   const Evaluation evaluation = evaluate(package, options);
   EXPECT_EQ(evaluation.pictures.front().width, 256);
   EXPECT_EQ(evaluation.pictures.front().height, 128);
   EXPECT_EQ(evaluation.pictures.front().images[0][0].size(), 256u * 128 * 3);
-  options.picture_map = "roughness";
+  options.pictures->map = "roughness";
   EXPECT_THROW(evaluate(package, options), InputError);
 }
 

@@ -165,8 +165,7 @@ class Choosing : public testing::Test {
   /// Of the package as decoded from disk: pooled over the maps by their metric weights and sizes.
   double pooledRmse() {
     const Package made = package();
-    const EvaluateOptions quick = {
-        .pca4 = false, .pca8 = false, .no_permutation = false, .paper = false, .limit = false, .blends = 0};
+    const EvaluateOptions quick = {.methods = {}, .baselines = {}, .blends = 0};
     const Evaluation evaluation = evaluatePackage(openCapture(folder_ / "c"), made, quick, testDevice(), progress_);
     double error = 0.0;
     double samples = 0.0;
@@ -307,10 +306,9 @@ TEST_F(Choosing, WhatCannotBeReachedIsRefused) {
   EXPECT_THAT(failure(both), HasSubstr("within the budget"));
   EXPECT_THAT(failure(target(std::nan(""))), HasSubstr("--target-rmse"));
   EXPECT_THAT(failure(target(-1.0)), HasSubstr("--target-rmse"));
-  for (const auto& [method, name] :
-       std::map<CompressOptions::Method, std::string>{{CompressOptions::Method::kClosedLoop, "closed-loop"},
-                                                      {CompressOptions::Method::kPaper, "paper"},
-                                                      {CompressOptions::Method::kNoPermutation, "no-permutation"}}) {
+  for (const auto& [method, name] : std::map<Method, std::string>{{Method::kClosedLoop, "closed-loop"},
+                                                                  {Method::kPaper, "paper"},
+                                                                  {Method::kNoPermutation, "no-permutation"}}) {
     CompressOptions wanted = budget(1u << 30);
     wanted.method = method;
     EXPECT_THAT(failure(wanted), testing::AllOf(HasSubstr("--method"), HasSubstr("got " + name)));

@@ -18,7 +18,6 @@ namespace facezip {
 namespace {
 using test::testDevice;
 namespace fs = std::filesystem;
-using Method = CompressOptions::Method;
 using test::Kind;
 using test::noise;
 using test::wrinkles;
@@ -43,8 +42,8 @@ double rmse(const fs::path& folder, const CompressOptions& options, CompressRepo
   const CompressReport compressed = compressCapture(capture, folder / "p", options, testDevice(), progress);
   if (report != nullptr) *report = compressed;
   const Evaluation evaluation =
-      evaluatePackage(capture, Package::open(folder / "p"), {.pca4 = false, .pca8 = false, .no_permutation = false},
-                      testDevice(), progress);
+      evaluatePackage(capture, Package::open(folder / "p"),
+                      {.methods = {Method::kPaper}, .baselines = {Baseline::kLimit}}, testDevice(), progress);
   const double samples = 3.0 * static_cast<double>(evaluation.covered_texels * evaluation.expressions.size());
   if (energy != nullptr) *energy = std::pow(evaluation.maps[0].rms_difference, 2) * samples;
   return evaluation.maps[0].rmse.at("package").pooled;

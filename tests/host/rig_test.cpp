@@ -146,7 +146,8 @@ TEST_F(RigTest, ThePackagesMeshIsPosedByExpressionsAndShapes) {
 
 TEST_F(RigTest, IsEvaluatedByItsOwnNamesAndThroughTheShapes) {
   EvaluateOptions options;
-  options.pca4 = options.pca8 = options.no_permutation = options.paper = options.limit = false;
+  options.methods = {};
+  options.baselines = {};
   Progress progress;
   const Package packed = Package::open(package());
   const Evaluation evaluation =
@@ -266,7 +267,8 @@ TEST_F(RigTest, ShapesThatNothingDeterminesDoNotHarmWhatWasCaptured) {
       rigCapture(capture, folder() / "template", folder() / "alike.facezip", options, test::testDevice(), progress);
   EXPECT_THAT(progress.text, testing::HasSubstr("are clamped"));
   EvaluateOptions evaluate;
-  evaluate.pca4 = evaluate.pca8 = evaluate.no_permutation = evaluate.paper = evaluate.limit = false;
+  evaluate.methods = {};
+  evaluate.baselines = {};
   const Evaluation evaluation =
       evaluatePackage(capture, Package::open(folder() / "alike.facezip"), evaluate, test::testDevice(), progress);
   EXPECT_NEAR(evaluation.maps[0].rmse.at("package").pooled, report.compress.rmse.front().second, 0.05);

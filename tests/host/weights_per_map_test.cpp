@@ -15,10 +15,9 @@
 
 namespace facezip {
 namespace {
-using test::testDevice;
-using Method = CompressOptions::Method;
 using test::Kind;
 using test::noise;
+using test::testDevice;
 using test::wrinkles;
 
 double otherWrinkles(int x, int y, int c, int n) { return 0.5 * wrinkles(y, 80 - x, c, (7 * n + 3) % 12); }
@@ -50,8 +49,7 @@ class WeightsPerMap : public testing::Test {
 
   /// RMSE of the maps of the package as decoded from disk.
   std::vector<double> decodedErrors() {
-    const EvaluateOptions quick = {
-        .pca4 = false, .pca8 = false, .no_permutation = false, .paper = false, .limit = false, .blends = 0};
+    const EvaluateOptions quick = {.methods = {}, .baselines = {}, .blends = 0};
     const Evaluation evaluation =
         evaluatePackage(openCapture(folder_ / "c"), package(), quick, testDevice(), progress_);
     return {evaluation.maps[0].rmse.at("package").pooled, evaluation.maps[1].rmse.at("package").pooled};

@@ -12,28 +12,12 @@
 #include "facezip/capture.hpp"
 #include "facezip/device.hpp"
 #include "facezip/geometry/length.hpp"
+#include "facezip/method.hpp"
 #include "facezip/progress.hpp"
 
 namespace facezip {
 
-/// How the permutation is found. Its lower bound is the same for all, and takes the time of kMessagePassing.
-enum class PermutationSolver {
-  kBest,            ///< the better of the two below
-  kDescent,         ///< coordinate descent from random starts (FaceZip, section 3.1)
-  kMessagePassing,  ///< message passing between pairs and triangles of masks, greedy starts, branch and bound
-};
-
 struct CompressOptions {
-  /// How difference textures and weights are found.
-  enum class Method {
-    kRefined,        ///< from the paper's result, weights and difference textures fitted in turn
-    kClosedLoop,     ///< the paper's weights, and per texel the difference textures that suit them best as decoded
-    kPaper,          ///< clusters, permuted so that seams fit (FaceZip, section 3.1)
-    kNoPermutation,  ///< clusters in the order of the clustering; the paper's ablation, for comparison only
-    /// Compress and stretch maps (Li et al. 2020, Eq. 10 to 14), the industry's usual: C is 2, whatever `differences`
-    /// says. Needs the mesh of every expression.
-    kCompressStretch,
-  };
   Method method = Method::kRefined;
   int differences = 4;  ///< C, difference textures of every map and weight channels of every expression; 1 to 8
   /// Instead of `differences` and `weight_scale`, with kRefined: the smallest package of at most this RMSE (pooled over

@@ -5,44 +5,51 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "facezip/capture.hpp"
 #include "facezip/device.hpp"
+#include "facezip/method.hpp"
 #include "facezip/package.hpp"
 #include "facezip/progress.hpp"
 
 namespace facezip {
 
+/// What a package is measured beside, other than packages by other methods.
+enum class Baseline {
+  kPca4,           ///< PCA with 4 components, the neutral as mean
+  kPca8,           ///< with 8
+  kLimit,          ///< the best C components of every block of weight_scale x weight_scale texels
+  kWeightsPerMap,  ///< the package's own method with weights of their own for every map: what it costs to share them
+};
+template <>
+const std::vector<NamedValue<Baseline>>& namesOf();
+
+/// Small images of every expression and of its errors.
+struct PictureOptions {
+  std::string map = "";       ///< of this map; "": the first of the package
+  bool all_maps = false;      ///< of every map, where none is named
+  bool paper_and_pca = true;  ///< also by the paper's method and PCA(4), where these are measured
+  int side = 256;             ///< pixels along the longer side; fewer where memory would not do
+};
+
 /// What to measure beside the package. A method of compression costs one compression more, with the package's own
 /// settings, in the directory for temporary files; the method that the package was made with costs nothing.
+/// kWeightsPerMap costs one where the maps of the package share weights.
 struct EvaluateOptions {
-  bool pca4 = true;               ///< PCA with 4 components, the neutral as mean
-  bool pca8 = true;               ///< with 8
-  bool no_permutation = true;     ///< the paper's method without permuting clusters
-  bool paper = true;              ///< the paper's method
-  bool compress_stretch = false;  ///< compress and stretch maps; needs the expressions' meshes
-  bool closed_loop = false;       ///< the paper's weights, difference textures fitted to them
-  bool refined = false;           ///< weights and difference textures fitted in turn
-  /// The package's own method with weights of their own for every map: what it costs to share them. One compression
-  /// more where the maps of the package do.
-  bool weights_per_map = false;
-  bool limit = true;  ///< the best C components of every block of weight_scale x weight_scale texels
+  std::set<Method> methods = {Method::kNoPermutation, Method::kPaper};
+  std::set<Baseline> baselines = {Baseline::kPca4, Baseline::kPca8, Baseline::kLimit};
   /// Also every method at C = 1, 2, 3, 4: up to 16 compressions more, one after the other.
   bool ablation = false;
   /// Numbers of masks to compress with, by the package's method and by the paper's: two compressions each.
   std::vector<int> mask_sweep = {};
   /// Of a rig's package: the capture's expressions are single shapes of the rig, by name, not what it was fitted to.
   bool shapes = false;
-  int blends = 16;  ///< R, random weight vectors to blend; 0: none
-  /// Collects small images of every expression and of its errors, for a picture: Evaluation::pictures.
-  bool pictures = false;
-  std::string picture_map = "";       ///< of this map; "": the first of the package, or every map
-  bool pictures_of_all_maps = false;  ///< where no picture_map is named
-  bool picture_baselines = true;      ///< also by the paper's method and PCA(4), where these are measured
-  int picture_side = 256;             ///< pixels along the longer side; fewer where memory would not do
+  int blends = 16;                                        ///< R, random weight vectors to blend; 0: none
+  std::optional<PictureOptions> pictures = std::nullopt;  ///< collected where given: Evaluation::pictures
   std::uint64_t memory_bytes = 2ull << 30;
 };
 
@@ -84,7 +91,7 @@ struct BlendErrors {
 /// Small images of one map of every expression, for a picture.
 struct ErrorPictures {
   std::string map;
-  int width = 0;  ///< pixels, at most EvaluateOptions::picture_side
+  int width = 0;  ///< pixels, at most PictureOptions::side
   int height = 0;
   std::vector<std::string> methods;  ///< "package", then of "paper" and "pca4" what was asked for
   double scale = 0.0;                ///< the largest p99 of the methods, in 1/255: where an error scale should end
@@ -107,10 +114,9 @@ struct MaskSweepPoint {
   std::map<std::string, std::vector<double>> rmse;  ///< by method, one for each map, pooled over expressions
 };
 
-/// Methods are named "package" (as decoded from disk), "no_permutation", "paper", "closed_loop", "refined" (packages of
-/// these methods; the package's own method is an entry too, equal to "package"), "weights_per_map" (equal to "package"
-/// where its maps do not share weights), "pca4", "pca8" and "limit"; of a rig's package also "rig": each expression as
-/// the rig's shapes blend it with the weights that it was found to have.
+/// Keys "by method": "package" (as decoded from disk), the names of methods and baselines (a package's own method is an
+/// entry too, equal to "package", as is "weights-per-map" where its maps do not share weights); of a rig's package also
+/// "rig": each expression as the rig's shapes blend it with the weights that it was found to have.
 struct Evaluation {
   struct Map {
     std::string name;
@@ -122,7 +128,7 @@ struct Evaluation {
     /// RMSE by method ("pca" for PCA) and C; 8 for "pca" only. Empty without EvaluateOptions::ablation.
     std::map<std::string, std::map<int, double>> ablation;
   };
-  std::string method;   ///< of the package: "paper", ...
+  std::string method;   ///< of the package, by name
   int differences = 0;  ///< C of the package
   std::vector<std::string> expressions;
   std::uint64_t covered_texels = 0;  ///< of the first map
@@ -142,8 +148,15 @@ struct Evaluation {
 
 /// Evaluates `package`, decoded from disk by the run time's own code, against `capture`. Errors are of the decoded
 /// values before they are rounded to the type of the neutral, as a shader has them; textures stream in bands of rows.
-/// Throws InputError if the package is not of this capture (maps, sizes, expressions) or has no map `picture_map`.
+/// Throws InputError if the package is not of this capture (maps, sizes, expressions) or has no map of the pictures'
+/// name.
 Evaluation evaluatePackage(const Capture& capture, const Package& package, const EvaluateOptions& options,
                            const Device& device, Progress& progress);
+
+/// What tables call the keys of an evaluation, in the order that they show them.
+const std::vector<std::pair<std::string, std::string>>& evaluationTitles();
+
+/// The title of a key; the key itself where there is none.
+std::string evaluationTitle(const std::string& key);
 
 }  // namespace facezip

@@ -17,8 +17,9 @@ std::string toJson(const RigReport& report);
 std::string toJson(const SolvedClip& clip);
 
 /// Throws OutputError if a report could not be written to `file`, as far as can be told: to be asked before the work
-/// that it is to tell of. Nothing for an empty name. taken   what the command reads, and where it writes besides: a
-/// report may be none of it, nor lie in it option  that names the file
+/// that it is to tell of. Nothing for an empty name.
+/// taken   what the command reads, and where it writes besides: a report may be none of it, nor lie in it
+/// option  that names the file
 void requireReportPlace(const std::filesystem::path& file, const ProtectedPaths& taken = {},
                         const std::string& option = "--report");
 

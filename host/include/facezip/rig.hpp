@@ -12,6 +12,7 @@
 #include "facezip/compress.hpp"
 #include "facezip/device.hpp"
 #include "facezip/geometry/example_rig.hpp"
+#include "facezip/named_value.hpp"
 #include "facezip/progress.hpp"
 
 namespace facezip {
@@ -22,6 +23,9 @@ enum class TextureSolve {
   kDamped,         ///< P = B^T (B B^T + lambda I)^-1, everywhere alike
   kPseudoInverse,  ///< P = B^+ (FaceZip, Eq. 11), everywhere alike; amplifies noise
 };
+
+template <>
+const std::vector<NamedValue<TextureSolve>>& namesOf();
 
 struct RigOptions {
   geometry::ExampleRigOptions fit;
@@ -65,7 +69,7 @@ struct RigReport {
   int skin_vertices = 0;
   int parts = 0;  ///< connected parts beyond the skin
   int degenerate_triangles = 0;
-  std::string texture_solve;      ///< "local", "damped" or "pseudo-inverse"
+  std::string texture_solve;      ///< by name
   double texture_damping = 0.0;   ///< lambda
   double strain_share = 0.0;      ///< of the strain beside the names of shapes, kLocal
   double left_out_rmse = 0.0;     ///< kLocal: each captured expression predicted from the others, sampled cells, 1/255

@@ -13,8 +13,6 @@
 
 namespace facezip::compress {
 namespace {
-
-using Method = CompressOptions::Method;
 using MapGroups = std::vector<std::vector<GridMap>>;
 
 raster::WeightGrid layGrid(const CompressionJob& job, const PackageForm& form) {

@@ -39,7 +39,7 @@ std::uint64_t diskBytes(const fs::path& directory) {
 PackageForm formOf(const RatePoint& point) { return {point.differences, point.weight_scale, point.code_bits}; }
 
 PackageForm formOf(const CompressOptions& options) {
-  const bool stretches = options.method == CompressOptions::Method::kCompressStretch;
+  const bool stretches = options.method == Method::kCompressStretch;
   return {stretches ? kCompressStretchMaps : options.differences, options.weight_scale, std::nullopt};
 }
 
@@ -52,7 +52,7 @@ std::optional<RateSearch> searchRates(const CompressOptions& options, const MapS
 void requireMemory(const CompressOptions& options, const MemoryPlan& memory, const PackageForm& form,
                    const std::vector<std::vector<GridMap>>& groups) {
   const auto method = options.method;
-  if (method != CompressOptions::Method::kRefined && method != CompressOptions::Method::kClosedLoop) return;
+  if (method != Method::kRefined && method != Method::kClosedLoop) return;
   for (const std::vector<GridMap>& group : groups) memory.windowRows(form, group);
 }
 

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "compress/method_record.hpp"
 #include "facezip/error.hpp"
 #include "package/package_json.hpp"
 #include "package/safe_names.hpp"
@@ -22,8 +21,8 @@ void requireSaneOptions(const CompressOptions& options) {
   const bool chooses = options.target_rmse || options.budget_bytes;
   require(!options.target_rmse || (*options.target_rmse > 0.0 && std::isfinite(*options.target_rmse)), "--target-rmse",
           "above 0 and finite", fmt::format("{}", options.target_rmse.value_or(0.0)));
-  require(!chooses || options.method == CompressOptions::Method::kRefined, "--method",
-          "refined, with a target or budget", methodName(options.method));
+  require(!chooses || options.method == Method::kRefined, "--method", "refined, with a target or budget",
+          nameOf(options.method));
   require(options.restarts >= 1, "--restarts", "at least 1", fmt::format("{}", options.restarts));
   require(options.cluster_restarts >= 1, "--cluster-restarts", "at least 1",
           fmt::format("{}", options.cluster_restarts));

@@ -8,37 +8,12 @@ namespace facezip::compress {
 namespace {
 using nlohmann::json;
 
-using Method = CompressOptions::Method;
-constexpr std::pair<Method, const char*> kMethods[] = {{Method::kRefined, "refined"},
-                                                       {Method::kClosedLoop, "closed-loop"},
-                                                       {Method::kPaper, "paper"},
-                                                       {Method::kNoPermutation, "no-permutation"},
-                                                       {Method::kCompressStretch, "compress-stretch"}};
-
-constexpr std::pair<PermutationSolver, const char*> kSolvers[] = {
-    {PermutationSolver::kBest, "best"},
-    {PermutationSolver::kDescent, "descent"},
-    {PermutationSolver::kMessagePassing, "message-passing"}};
-
-const char* solverName(PermutationSolver solver) {
-  for (const auto& [value, name] : kSolvers) {
-    if (value == solver) return name;
-  }
-  return "";
-}
-
-PermutationSolver solverOf(const std::string& name, const std::string& file) {
-  for (const auto& [value, known] : kSolvers) {
-    if (name == known) return value;
-  }
-  throw InputError({file, "method.permutation_solver", "a solver of this facezip", name, "compress the capture again"});
-}
-
-Method methodOf(const std::string& name, const std::string& file) {
-  for (const auto& [value, known] : kMethods) {
-    if (name == known) return value;
-  }
-  throw InputError({file, "method.name", "a method of this facezip", name, "compress the capture again"});
+template <typename Value>
+Value named(const json& record, const char* field, const std::string& what, const std::string& file) {
+  const auto name = record.at(field).get<std::string>();
+  if (const std::optional<Value> value = findNamed<Value>(name)) return *value;
+  throw InputError(
+      {file, std::string("method.") + field, what + " of this facezip", name, "compress the capture again"});
 }
 
 std::string lengthText(const geometry::Length& length) {
@@ -47,20 +22,13 @@ std::string lengthText(const geometry::Length& length) {
 
 }  // namespace
 
-const char* methodName(Method method) {
-  for (const auto& [value, name] : kMethods) {
-    if (value == method) return name;
-  }
-  return "";
-}
-
 std::string methodJson(const CompressOptions& options, const PackageForm& form, const MethodResult& result) {
-  json record = {{"name", methodName(options.method)},
+  json record = {{"name", nameOf(options.method)},
                  {"differences", form.differences},
                  {"weight_scale", form.weight_scale},
                  {"mask_radius", lengthText(options.mask_radius)},
                  {"mask_cutoff", options.mask_cutoff},
-                 {"permutation_solver", solverName(options.permutation_solver)},
+                 {"permutation_solver", nameOf(options.permutation_solver)},
                  {"restarts", options.restarts},
                  {"cluster_restarts", options.cluster_restarts},
                  {"seed", options.seed},
@@ -83,12 +51,12 @@ CompressOptions optionsFromMethodJson(const std::string& json_text, const std::s
   try {
     const json record = json::parse(json_text);
     CompressOptions options;
-    options.method = methodOf(record.at("name").get<std::string>(), file);
+    options.method = named<Method>(record, "name", "a method", file);
     options.differences = record.at("differences").get<int>();
     options.weight_scale = record.at("weight_scale").get<int>();
     options.mask_radius = geometry::parseLength(record.at("mask_radius").get<std::string>());
     options.mask_cutoff = record.at("mask_cutoff").get<double>();
-    options.permutation_solver = solverOf(record.at("permutation_solver").get<std::string>(), file);
+    options.permutation_solver = named<PermutationSolver>(record, "permutation_solver", "a solver", file);
     options.restarts = record.at("restarts").get<int>();
     options.cluster_restarts = record.at("cluster_restarts").get<int>();
     options.seed = record.at("seed").get<std::uint64_t>();

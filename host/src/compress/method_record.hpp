@@ -9,9 +9,6 @@
 
 namespace facezip::compress {
 
-/// Name of a method on the command line and in records: "refined", "closed-loop", "paper", "no-permutation".
-const char* methodName(CompressOptions::Method method);
-
 /// What a compression found that its package keeps a note of.
 struct MethodResult {
   int masks = 0;             ///< K

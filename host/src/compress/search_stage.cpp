@@ -27,7 +27,7 @@ struct FoundPermutation {
 };
 
 FoundPermutation permute(const SeamTables& tables, const CompressOptions& options, const Run& run) {
-  if (options.method == CompressOptions::Method::kNoPermutation) {
+  if (options.method == Method::kNoPermutation) {
     FoundPermutation found{identityPermutation(tables), {}};
     found.record.cost = found.permutation.cost;
     return found;

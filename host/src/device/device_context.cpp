@@ -12,23 +12,53 @@
 
 namespace facezip::device {
 
+namespace {
+
+/// Text of one file, as it stands.
+std::string kernelText(std::string_view name, const char* folder) {
+  if (folder != nullptr) {
+    const std::filesystem::path file = std::filesystem::path(folder) / name;
+    std::error_code error;
+    if (std::filesystem::exists(file, error)) return io::readFile(file, "a kernel file");
+  }
+  const auto& embedded = embeddedKernelSources();
+  const auto found = embedded.find(name);
+  if (found == embedded.end()) throw DeviceError(fmt::format("kernel file {}", name), 0, "not part of this build");
+  return std::string(found->second);
+}
+
+/// Appends the text of `name` to `source`, with the files that it includes in place of the lines that say so: drivers
+/// see one text, and no folder. Lines are counted so that messages name the file and line as they stand.
+void appendKernel(std::string_view name, const char* folder, std::string& source) {
+  constexpr std::string_view kInclude = "#include \"";
+  const std::string text = kernelText(name, folder);
+  source += fmt::format("#line 1 \"{}\"\n", name);
+  int line_number = 1;
+  for (std::size_t begin = 0; begin < text.size(); ++line_number) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = std::string_view(text).substr(begin, end - begin);
+    if (line.starts_with(kInclude)) {
+      const std::string_view rest = line.substr(kInclude.size());
+      appendKernel(rest.substr(0, rest.find('"')), folder, source);
+      source += fmt::format("#line {} \"{}\"\n", line_number + 1, name);
+    } else {
+      source.append(line).append("\n");
+    }
+    begin = end + 1;
+  }
+}
+
+}  // namespace
+
 std::string kernelSource(std::string_view file_name) {
   const char* folder = std::getenv("FACEZIP_KERNEL_DIR");
   if (folder != nullptr && !std::filesystem::is_directory(folder)) {
     throw InputError({"FACEZIP_KERNEL_DIR", "", "a folder with kernel files", folder, "unset it for those built in"});
   }
-  const auto find = [folder](std::string_view name) -> std::string {
-    if (folder != nullptr) {
-      const std::filesystem::path file = std::filesystem::path(folder) / name;
-      std::error_code error;
-      if (std::filesystem::exists(file, error)) return io::readFile(file, "a kernel file");
-    }
-    const auto& embedded = embeddedKernelSources();
-    const auto found = embedded.find(name);
-    if (found == embedded.end()) throw DeviceError(fmt::format("kernel file {}", name), 0, "not part of this build");
-    return std::string(found->second);
-  };
-  return find("common.cl") + "\n#line 1 \"" + std::string(file_name) + "\"\n" + find(file_name);
+  std::string source;
+  appendKernel("common.cl", folder, source);
+  appendKernel(file_name, folder, source);
+  return source;
 }
 
 namespace {

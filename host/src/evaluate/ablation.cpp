@@ -13,8 +13,6 @@
 
 namespace facezip::evaluate {
 namespace {
-
-using Method = CompressOptions::Method;
 constexpr Method kMethods[] = {Method::kNoPermutation, Method::kPaper, Method::kClosedLoop, Method::kRefined};
 
 /// RMSE of a package on every map, pooled over expressions.
@@ -46,7 +44,7 @@ void addMeasured(const std::string& method, int differences, Evaluation& evaluat
 }
 
 void addPackage(const Subject& subject, Method method, int differences, Evaluation& evaluation) {
-  const std::string key = methodKey(method);
+  const std::string key = nameOf(method);
   CompressOptions options = subject.recorded;
   options.method = method;
   options.differences = differences;
@@ -61,7 +59,7 @@ void addPackage(const Subject& subject, Method method, int differences, Evaluati
 
 void addAblation(const Subject& subject, Evaluation& evaluation) {
   for (const Method method : kMethods) {
-    const std::string key = methodKey(method);
+    const std::string key = nameOf(method);
     for (int differences = 1; differences <= kMostAblated; ++differences) {
       const bool measured = differences == evaluation.differences && evaluation.bytes.contains(key);
       if (measured) {
@@ -71,7 +69,7 @@ void addAblation(const Subject& subject, Evaluation& evaluation) {
       }
     }
   }
-  evaluation.ablation_bytes["limit"] = evaluation.ablation_bytes.at(methodKey(Method::kPaper));
+  evaluation.ablation_bytes["limit"] = evaluation.ablation_bytes.at(nameOf(Method::kPaper));
 }
 
 void addMaskSweep(const Subject& subject, const std::vector<int>& masks, Evaluation& evaluation) {
@@ -83,7 +81,7 @@ void addMaskSweep(const Subject& subject, const std::vector<int>& masks, Evaluat
     MaskSweepPoint& point = evaluation.mask_sweep.emplace_back();
     point.masks = count;
     for (const Method method : {subject.recorded.method, Method::kPaper}) {
-      const std::string key = methodKey(method);
+      const std::string key = nameOf(method);
       if (point.rmse.contains(key)) continue;
       CompressOptions options = subject.recorded;
       options.method = method;

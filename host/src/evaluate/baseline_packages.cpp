@@ -23,22 +23,6 @@ class LabelledProgress : public Progress {
 
 }  // namespace
 
-std::string methodKey(CompressOptions::Method method) {
-  switch (method) {
-    case CompressOptions::Method::kRefined:
-      return "refined";
-    case CompressOptions::Method::kClosedLoop:
-      return "closed_loop";
-    case CompressOptions::Method::kPaper:
-      return "paper";
-    case CompressOptions::Method::kCompressStretch:
-      return "compress_stretch";
-    case CompressOptions::Method::kNoPermutation:
-      break;
-  }
-  return "no_permutation";
-}
-
 TemporaryPackage::TemporaryPackage(const Capture& capture, const CompressOptions& options, const std::string& label,
                                    const Device& device, Progress& progress) {
   LabelledProgress labelled(label, progress);

@@ -10,9 +10,6 @@
 
 namespace facezip::evaluate {
 
-/// Key of a method in reports: "refined", "closed_loop", "paper", "no_permutation".
-std::string methodKey(CompressOptions::Method method);
-
 /// A package in the directory for temporary files, gone with the object.
 class TemporaryPackage {
  public:

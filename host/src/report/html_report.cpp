@@ -154,6 +154,13 @@ json searchJson(const Evaluation& evaluation) {
   return search;
 }
 
+/// What the page calls the keys of the evaluation.
+json titlesJson() {
+  json titles = json::object();
+  for (const auto& [key, title] : evaluationTitles()) titles[key] = title;
+  return titles;
+}
+
 /// JSON inside a page: no end of a script can stand in it.
 std::string forScript(const json& data) {
   std::string text = data.dump(-1, ' ', /*ensure_ascii=*/true);
@@ -180,6 +187,7 @@ void writeHtmlReport(const fs::path& file, const Package& package, const Evaluat
                {"package", json::parse(package::packageJson(package.description()))},
                {"device", options.device},
                {"compress", options.compress_json.empty() ? json() : json::parse(options.compress_json)},
+               {"titles", titlesJson()},
                {"search", searchJson(evaluation)},
                {"sweep", json::array()},
                {"note", ""},

@@ -1,4 +1,5 @@
-// rig.cpp - from a capture and a template to an animatable face. Each stage is a step of its own file.
+// rig.cpp - from a capture and a template to an animatable face: meshes and template, the fit, the package of the
+// capture, textures and meshes of the shapes. Each stage hands what it found to the next.
 #include "facezip/rig.hpp"
 
 #include <fmt/format.h>
@@ -67,181 +68,159 @@ RigHeadMotion headMotionOf(const geometry::Similarity& motion, const Eigen::Matr
   return {degrees, scale * geometry::distancesBetween(motion.apply(neutral), neutral).mean};
 }
 
-class Rigging {
- public:
-  Rigging(const Capture& capture, const fs::path& template_directory, const fs::path& package,
-          const RigOptions& options, const Device& device, Progress& progress)
-      : capture_(capture),
-        template_directory_(template_directory),
-        options_(options),
-        device_(device),
-        progress_(progress),
-        staged_(package, package::footprint(), &progress) {}
-
-  RigReport run() {
-    read();
-    fit();
-    // Compressed within the staging directory: both appear together or not at all.
-    CompressOptions compress = options_.compress;
-    compress.further_weight_maps = static_cast<int>(template_.names.size());  // a budget holds the shapes' too
-    const fs::path compressed = staged_.path() / ".compressed";               // a name that no map has
-    report_.compress = compressCapture(capture_, compressed, compress, device_, progress_);
-    for (const fs::directory_entry& entry : fs::directory_iterator(compressed)) {
-      fs::rename(entry.path(), staged_.path() / entry.path().filename());
-    }
-    fs::remove(compressed);
-    clock_.book("compressing");
-    solveTextures();
-    writeMeshes();
-    staged_.commit();
-    clock_.book("publishing");
-    report_.seconds = clock_.seconds();
-    return report_;
+void requireSaneOptions(const RigOptions& options) {
+  if (options.fit.iterations < 0 || options.fit.iterations > 1000) {
+    throw InputError({"--iterations", "", "0 to 1000", fmt::format("{}", options.fit.iterations), ""});
   }
-
- private:
-  void read() {
-    if (options_.fit.iterations < 0 || options_.fit.iterations > 1000) {
-      throw InputError({"--iterations", "", "0 to 1000", fmt::format("{}", options_.fit.iterations), ""});
-    }
-    if (options_.texture_damping && !(*options_.texture_damping > 0.0 && *options_.texture_damping <= 1e6)) {
-      throw InputError(
-          {"--texture-damping", "", "above 0 and at most 1e6", fmt::format("{}", *options_.texture_damping), ""});
-    }
-    progress_.stage("reading the template", 0);
-    template_ = readTemplate(template_directory_);
-    subject_ = readSubject(capture_, options_, progress_);
-    requireSkin(template_, subject_.neutral, capture_.neutral_mesh.string());
-    problem_.neutral = subject_.neutral.positions;
-    problem_.triangles = subject_.neutral.triangles;
-    const Eigen::Index skin = problem_.neutral.rows();
-    problem_.template_neutral = template_.neutral.positions.topRows(skin);
-    for (const Eigen::MatrixX3d& shape : template_.shapes) problem_.template_shapes.emplace_back(shape.topRows(skin));
-    problem_.examples = subject_.expressions;
-    if (!options_.guess.empty()) {
-      problem_.guess = readGuess(options_.guess, capture_.expressions, template_.names);
-    }
-    report_.expressions = capture_.expressions;
-    report_.shapes = template_.names;
-    report_.package_expressions =
-        packageNamesOf(capture_.expressions, template_.names, capture_.directory.string(), progress_);
-    report_.skin_vertices = static_cast<int>(skin);
-    clock_.book("reading meshes");
+  if (options.texture_damping && !(*options.texture_damping > 0.0 && *options.texture_damping <= 1e6)) {
+    throw InputError(
+        {"--texture-damping", "", "above 0 and at most 1e6", fmt::format("{}", *options.texture_damping), ""});
   }
+}
 
-  void fit() {
-    progress_.stage("fitting the rig", static_cast<std::size_t>(options_.fit.iterations));
-    rig_ = geometry::fitExampleRig(problem_, options_.fit, [this](int iteration) {
-      progress_.checkCancelled();
-      progress_.advance(static_cast<std::size_t>(iteration));
-    });
-    const double scale = subject_.millimetresPerUnit();
-    report_.weights = rowsOf(rig_.weights);
-    for (const auto& residual : rig_.residuals) report_.residuals.push_back(inMillimetres(residual, scale));
-    for (const auto& residual : rig_.template_residuals) {
-      report_.template_residuals.push_back(inMillimetres(residual, scale));
-    }
-    for (const double rms : rig_.convergence) report_.convergence.push_back(scale * rms);
-    for (const geometry::Similarity& motion : rig_.head_motions) {
-      report_.head_motions.push_back(headMotionOf(motion, problem_.neutral, scale));
-    }
-    subject_.expressions = rig_.examples;  // as the rig poses them: without the head's motion
-    report_.transfer = rig_.transfer == geometry::ShapeTransfer::kGradients ? "deformation gradients" : "displacements";
-    report_.shape_prior = rig_.shape_prior;
-    report_.left_out_share = rig_.left_out_template > 0.0 ? rig_.left_out / rig_.left_out_template : 1.0;
-    report_.degenerate_triangles = rig_.degenerate_triangles;
-    for (std::size_t m = 0; m < report_.shapes.size(); ++m) {
-      if (rig_.shapes[m].isZero(0.0)) {
-        report_.still.push_back(report_.shapes[m]);
-      } else if (rig_.weights.col(static_cast<Eigen::Index>(m)).maxCoeff() <= kSeen) {
-        report_.unseen.push_back(report_.shapes[m]);
-      }
-    }
-    noteWhatIsUnusual();
-    clock_.book("fitting the rig");
-  }
-
-  void noteWhatIsUnusual() {
-    if (!options_.fit.head_motion) {
-      noteMovingHead("the template does not explain of the expressions", rig_.rigid_share, report_.template_residuals,
-                     progress_);
-    }
-    if (4 * report_.expressions.size() < report_.shapes.size()) {
-      progress_.note(fmt::format("{} shapes from {} expression{}: most of the rig is the template's",
-                                 report_.shapes.size(), report_.expressions.size(),
-                                 report_.expressions.size() == 1 ? "" : "s"));
-    }
-    if (!report_.unseen.empty()) {
-      progress_.note(fmt::format("no expression shows {}: as the template has them", fmt::join(report_.unseen, ", ")));
-    }
-    if (!report_.still.empty()) {
-      progress_.note(fmt::format("{}: the template's shape moves nothing", fmt::join(report_.still, ", ")));
-    }
-    if (report_.degenerate_triangles > 0) {
-      progress_.note(fmt::format("{} triangles of the neutral have no area: their vertices follow their neighbours",
-                                 report_.degenerate_triangles));
-    }
-  }
-
-  void solveTextures() {
-    const Package package = Package::open(staged_.path());
-    const compress::Face face = compress::readFace(capture_, options_.compress.region);
-    const PackageMaps maps = openPackageMaps(capture_, face, package);
-    const SkinFeatures features(subject_.neutral, subject_.expressions, rig_);
-    const ChosenSolve chosen = chooseSolve(options_, rig_.weights, features, maps, progress_);
-    report_.texture_rank = rankOf(rig_.weights);
-    if (report_.texture_rank < static_cast<int>(report_.expressions.size())) {
-      progress_.note(
-          fmt::format("the expressions' weights have rank {}, not {}: some repeat or combine others; of twins, "
-                      "give one",
-                      report_.texture_rank, report_.expressions.size()));
-    }
-    const double clamped = addShapeWeights(staged_.path(), report_.package_expressions, report_.shapes, chosen.solver,
-                                           features, maps, progress_);
-    if (clamped > kMuchClamped) {
-      progress_.note(
-          fmt::format("{:.1f} % of the shapes' weights lie beyond those of the captured expressions and are "
-                      "clamped: the expressions hardly tell some shapes apart",
-                      100.0 * clamped));
-    }
-    report_.texture_solve = options_.texture_solve == TextureSolve::kLocal    ? "local"
-                            : options_.texture_solve == TextureSolve::kDamped ? "damped"
-                                                                              : "pseudo-inverse";
-    report_.texture_damping = options_.texture_solve == TextureSolve::kPseudoInverse ? 0.0 : chosen.solver.damping;
-    report_.strain_share = chosen.solver.strain_share;
-    report_.left_out_rmse = chosen.left_out_rmse;
-    report_.left_out_nothing = chosen.left_out_nothing;
-    clock_.book("textures of shapes");
-  }
-
-  void writeMeshes() {
-    progress_.stage("writing shapes", 0);
-    const RigFace face = assembleFace(subject_, template_, rig_);
-    report_.vertices = static_cast<int>(face.neutral.positions.rows());
-    report_.parts = face.parts;
-    const Package package = Package::open(staged_.path());
-    writeFace(staged_.path(), face, report_.shapes, capture_.name, geometry::metresPerUnit(subject_.unit),
-              package.maps());
-    if (options_.compress.mesh) {
-      writePackageMesh(staged_.path(), subject_, rig_, report_.package_expressions, report_.shapes, capture_.name);
-    }
-    io::writeTextFile(staged_.path() / kRigFile, rigJson(report_, subject_.millimetresPerUnit()));
-    clock_.book("writing shapes");
-  }
-
-  const Capture& capture_;
-  const fs::path& template_directory_;
-  const RigOptions& options_;
-  const Device& device_;
-  Progress& progress_;
-  io::StagedDirectory staged_;
-  compress::StageClock clock_;
-  RigTemplate template_;
-  RigSubject subject_;
-  geometry::RigProblem problem_;
-  geometry::ExampleRig rig_;
-  RigReport report_;
+/// What a rig is made of, read and checked.
+struct RigInputs {
+  RigTemplate rig_template;
+  RigSubject subject;
+  Eigen::MatrixXd guess;                         ///< N by M; no rows without one
+  std::vector<std::string> package_expressions;  ///< N
 };
+
+RigInputs readInputs(const Capture& capture, const fs::path& template_directory, const RigOptions& options,
+                     Progress& progress) {
+  progress.stage("reading the template", 0);
+  RigInputs inputs;
+  inputs.rig_template = readTemplate(template_directory);
+  inputs.subject = readSubject(capture, options, progress);
+  requireSkin(inputs.rig_template, inputs.subject.neutral, capture.neutral_mesh.string());
+  const std::vector<std::string>& shapes = inputs.rig_template.names;
+  if (!options.guess.empty()) inputs.guess = readGuess(options.guess, capture.expressions, shapes);
+  inputs.package_expressions = packageNamesOf(capture.expressions, shapes, capture.directory.string(), progress);
+  return inputs;
+}
+
+/// The skin of subject and template, as the fit takes it.
+geometry::RigProblem problemOf(const RigInputs& inputs) {
+  const RigTemplate& source = inputs.rig_template;
+  geometry::RigProblem problem;
+  problem.neutral = inputs.subject.neutral.positions;
+  problem.triangles = inputs.subject.neutral.triangles;
+  const Eigen::Index skin = problem.neutral.rows();
+  problem.template_neutral = source.neutral.positions.topRows(skin);
+  for (const Eigen::MatrixX3d& shape : source.shapes) problem.template_shapes.emplace_back(shape.topRows(skin));
+  problem.examples = inputs.subject.expressions;
+  problem.guess = inputs.guess;
+  return problem;
+}
+
+geometry::ExampleRig fitRig(const geometry::RigProblem& problem, const RigOptions& options, Progress& progress) {
+  progress.stage("fitting the rig", static_cast<std::size_t>(options.fit.iterations));
+  return geometry::fitExampleRig(problem, options.fit, [&progress](int iteration) {
+    progress.checkCancelled();
+    progress.advance(static_cast<std::size_t>(iteration));
+  });
+}
+
+/// What the report says of the fit.
+RigReport reportFit(const Capture& capture, const RigInputs& inputs, const geometry::ExampleRig& rig) {
+  RigReport report;
+  report.expressions = capture.expressions;
+  report.shapes = inputs.rig_template.names;
+  report.package_expressions = inputs.package_expressions;
+  report.skin_vertices = static_cast<int>(inputs.subject.neutral.positions.rows());
+  const double scale = inputs.subject.millimetresPerUnit();
+  report.weights = rowsOf(rig.weights);
+  for (const auto& residual : rig.residuals) report.residuals.push_back(inMillimetres(residual, scale));
+  for (const auto& residual : rig.template_residuals) {
+    report.template_residuals.push_back(inMillimetres(residual, scale));
+  }
+  for (const double rms : rig.convergence) report.convergence.push_back(scale * rms);
+  for (const geometry::Similarity& motion : rig.head_motions) {
+    report.head_motions.push_back(headMotionOf(motion, inputs.subject.neutral.positions, scale));
+  }
+  report.transfer = rig.transfer == geometry::ShapeTransfer::kGradients ? "deformation gradients" : "displacements";
+  report.shape_prior = rig.shape_prior;
+  report.left_out_share = rig.left_out_template > 0.0 ? rig.left_out / rig.left_out_template : 1.0;
+  report.degenerate_triangles = rig.degenerate_triangles;
+  for (std::size_t m = 0; m < report.shapes.size(); ++m) {
+    if (rig.shapes[m].isZero(0.0)) {
+      report.still.push_back(report.shapes[m]);
+    } else if (rig.weights.col(static_cast<Eigen::Index>(m)).maxCoeff() <= kSeen) {
+      report.unseen.push_back(report.shapes[m]);
+    }
+  }
+  return report;
+}
+
+void noteWhatIsUnusual(const RigReport& report, double rigid_share, bool head_motion, Progress& progress) {
+  if (!head_motion) {
+    noteMovingHead("the template does not explain of the expressions", rigid_share, report.template_residuals,
+                   progress);
+  }
+  if (4 * report.expressions.size() < report.shapes.size()) {
+    progress.note(fmt::format("{} shapes from {} expression{}: most of the rig is the template's", report.shapes.size(),
+                              report.expressions.size(), report.expressions.size() == 1 ? "" : "s"));
+  }
+  if (!report.unseen.empty()) {
+    progress.note(fmt::format("no expression shows {}: as the template has them", fmt::join(report.unseen, ", ")));
+  }
+  if (!report.still.empty()) {
+    progress.note(fmt::format("{}: the template's shape moves nothing", fmt::join(report.still, ", ")));
+  }
+  if (report.degenerate_triangles > 0) {
+    progress.note(fmt::format("{} triangles of the neutral have no area: their vertices follow their neighbours",
+                              report.degenerate_triangles));
+  }
+}
+
+/// How the shapes' textures were found.
+struct ShapeTextures {
+  ChosenSolve chosen;
+  int rank = 0;  ///< of the expressions' weights
+};
+
+/// Adds the shapes' weight maps to the package of the captured expressions.
+ShapeTextures addShapeTextures(const Capture& capture, const fs::path& directory, const RigInputs& inputs,
+                               const geometry::ExampleRig& rig, const RigOptions& options, Progress& progress) {
+  const Package package = Package::open(directory);
+  const compress::Face face = compress::readFace(capture, options.compress.region);
+  const PackageMaps maps = openPackageMaps(capture, face, package);
+  const SkinFeatures features(inputs.subject.neutral, rig.examples, rig);
+  ShapeTextures textures{chooseSolve(options, rig.weights, features, maps, progress), rankOf(rig.weights)};
+  if (textures.rank < static_cast<int>(capture.expressions.size())) {
+    progress.note(
+        fmt::format("the expressions' weights have rank {}, not {}: some repeat or combine others; of twins, "
+                    "give one",
+                    textures.rank, capture.expressions.size()));
+  }
+  const double clamped = addShapeWeights(directory, inputs.package_expressions, inputs.rig_template.names,
+                                         textures.chosen.solver, features, maps, progress);
+  if (clamped > kMuchClamped) {
+    progress.note(
+        fmt::format("{:.1f} % of the shapes' weights lie beyond those of the captured expressions and are "
+                    "clamped: the expressions hardly tell some shapes apart",
+                    100.0 * clamped));
+  }
+  return textures;
+}
+
+void reportTextures(const ShapeTextures& textures, const RigOptions& options, RigReport& report) {
+  report.texture_rank = textures.rank;
+  report.texture_solve = nameOf(options.texture_solve);
+  report.texture_damping = options.texture_solve == TextureSolve::kPseudoInverse ? 0.0 : textures.chosen.solver.damping;
+  report.strain_share = textures.chosen.solver.strain_share;
+  report.left_out_rmse = textures.chosen.left_out_rmse;
+  report.left_out_nothing = textures.chosen.left_out_nothing;
+}
+
+/// shapes/, rig.gltf and mesh.glb.
+void writeMeshes(const RigInputs& inputs, const RigFace& face, const geometry::ExampleRig& rig,
+                 const std::string& title, bool package_mesh, const fs::path& directory) {
+  const std::vector<std::string>& shapes = inputs.rig_template.names;
+  const Package package = Package::open(directory);
+  writeFace(directory, face, shapes, title, geometry::metresPerUnit(inputs.subject.unit), package.maps());
+  if (package_mesh) writePackageMesh(directory, inputs.subject, rig, inputs.package_expressions, shapes, title);
+}
 
 }  // namespace
 
@@ -253,8 +232,45 @@ ProtectedPaths inputsOf(const Capture& capture, const fs::path& template_directo
 
 RigReport rigCapture(const Capture& capture, const fs::path& template_directory, const fs::path& package,
                      const RigOptions& options, const Device& device, Progress& progress) {
+  requireSaneOptions(options);
   inputsOf(capture, template_directory, options).requireApartFromFolder(package);
-  return Rigging(capture, template_directory, package, options, device, progress).run();
+  compress::StageClock clock;
+  io::StagedDirectory staged(package, package::footprint(), &progress);
+  RigInputs inputs = readInputs(capture, template_directory, options, progress);
+  clock.book("reading meshes");
+
+  const geometry::ExampleRig rig = fitRig(problemOf(inputs), options, progress);
+  RigReport report = reportFit(capture, inputs, rig);
+  noteWhatIsUnusual(report, rig.rigid_share, options.fit.head_motion, progress);
+  inputs.subject.expressions = rig.examples;  // as the rig poses them: without the head's motion
+  clock.book("fitting the rig");
+
+  // Compressed within the staging directory: both appear together or not at all.
+  CompressOptions compress = options.compress;
+  compress.further_weight_maps = static_cast<int>(inputs.rig_template.names.size());  // a budget holds the shapes' too
+  const fs::path compressed = staged.path() / ".compressed";                          // a name that no map has
+  report.compress = compressCapture(capture, compressed, compress, device, progress);
+  for (const fs::directory_entry& entry : fs::directory_iterator(compressed)) {
+    fs::rename(entry.path(), staged.path() / entry.path().filename());
+  }
+  fs::remove(compressed);
+  clock.book("compressing");
+
+  const ShapeTextures textures = addShapeTextures(capture, staged.path(), inputs, rig, options, progress);
+  reportTextures(textures, options, report);
+  clock.book("textures of shapes");
+
+  progress.stage("writing shapes", 0);
+  const RigFace face = assembleFace(inputs.subject, inputs.rig_template, rig);
+  report.vertices = static_cast<int>(face.neutral.positions.rows());
+  report.parts = face.parts;
+  writeMeshes(inputs, face, rig, capture.name, options.compress.mesh, staged.path());
+  io::writeTextFile(staged.path() / kRigFile, rigJson(report, inputs.subject.millimetresPerUnit()));
+  clock.book("writing shapes");
+  staged.commit();
+  clock.book("publishing");
+  report.seconds = clock.seconds();
+  return report;
 }
 
 }  // namespace facezip

@@ -7,6 +7,20 @@
 #include <algorithm>
 #include <cassert>
 
+namespace facezip {
+
+template <>
+const std::vector<NamedValue<TextureSolve>>& namesOf() {
+  static const std::vector<NamedValue<TextureSolve>> names = {
+      {TextureSolve::kLocal, "local", "local"},
+      {TextureSolve::kDamped, "damped", "damped"},
+      {TextureSolve::kPseudoInverse, "pseudo-inverse", "pseudo-inverse"},
+  };
+  return names;
+}
+
+}  // namespace facezip
+
 namespace facezip::rig {
 namespace {
 

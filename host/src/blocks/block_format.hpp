@@ -1,0 +1,68 @@
+// block_format.hpp - block-compressed texture formats: textures that GPUs hold as blocks of a few texels each and
+// decode while they sample.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace facezip::blocks {
+
+enum class BlockFormat {
+  kBc1,
+  kBc4,
+  kBc5,
+  kBc7,
+  kAstc4x4,
+  kAstc5x4,
+  kAstc5x5,
+  kAstc6x5,
+  kAstc6x6,
+  kAstc8x5,
+  kAstc8x6,
+  kAstc8x8,
+  kAstc10x5,
+  kAstc10x6,
+  kAstc10x8,
+  kAstc10x10,
+  kAstc12x10,
+  kAstc12x12,
+};
+
+/// What files and graphics APIs call a format.
+struct BlockFormatInfo {
+  BlockFormat format;
+  std::string_view name;  ///< on the command line: "bc7", "astc-6x6"
+  int block_width;        ///< texels of a block
+  int block_height;
+  int block_bytes;   ///< 8 or 16
+  int max_channels;  ///< a texture of 1 to that many channels can be stored
+  /// VkFormat, which is KTX2's, of samples as they are stored; with sRGB's curve undone on sampling, 0 where there is
+  /// none.
+  std::uint32_t vk_unorm;
+  std::uint32_t vk_srgb;
+  /// DXGI_FORMAT, which is DDS's; 0 where there is none.
+  std::uint32_t dxgi_unorm;
+  std::uint32_t dxgi_srgb;
+};
+
+/// All formats, in the order of the enumeration.
+std::span<const BlockFormatInfo> blockFormats();
+const BlockFormatInfo& infoOf(BlockFormat format);
+
+/// The format of that name, with `option` named in the error. Throws InputError that lists the names there are.
+BlockFormat blockFormatOf(std::string_view name, std::string_view option);
+
+/// "bc1, bc4, ...", for messages and help.
+std::string blockFormatNames();
+
+/// Whether blocks are ASTC's, which libastcenc codes; all others are coded here.
+bool isAstc(BlockFormat format);
+
+/// Blocks along `texels`, and bytes of a texture of width x height texels. Sizes need not be multiples of the block.
+int blockCount(int texels, int block_side);
+std::size_t blockBytes(BlockFormat format, int width, int height);
+
+}  // namespace facezip::blocks

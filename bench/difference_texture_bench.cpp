@@ -1,8 +1,8 @@
 #include <benchmark/benchmark.h>
 
 #include "compress/bands/difference.hpp"
-#include "compress/codes/texture_encoder.hpp"
-#include "compress/codes/texture_range.hpp"
+#include "compress/codes/difference_texture_encode.hpp"
+#include "compress/codes/difference_texture_range.hpp"
 #include "compress/search/difference_texture.hpp"
 #include "roof.hpp"
 #include "synthetic_capture.hpp"

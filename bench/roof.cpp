@@ -61,11 +61,9 @@ double copyRoof(const device::DeviceContext& context, const cl::Program& program
   const cl::Buffer from = context.allocate(bytes, CL_MEM_READ_WRITE, "roof");
   const cl::Buffer to = context.allocate(bytes, CL_MEM_READ_WRITE, "roof");
   context.queue().enqueueFillBuffer(from, 1.0f, 0, bytes);
-  cl::Kernel kernel(program, "roof_copy");
-  kernel.setArg(0, from);
-  kernel.setArg(1, to);
+  const cl::Kernel kernel(program, "roof_copy");
   const double seconds = bestOf(kTries, [&] {
-    context.run(kernel, cl::NDRange(items), cl::NullRange);
+    context.launch(kernel, device::WorkItems(items), from, to);
     context.finish();
   });
   return 2.0 * static_cast<double>(items * 64 * 64) / seconds * 1e-9;
@@ -77,12 +75,9 @@ double fmaRoof(const device::DeviceContext& context, const cl::Program& program)
   const std::size_t items = std::size_t{context.info().compute_units} * (gpu ? 1024 : 16);
   const int rounds = gpu ? 2000 : 20000;
   const cl::Buffer out = context.allocate(items * 64, CL_MEM_READ_WRITE, "roof");
-  cl::Kernel kernel(program, "roof_fma");
-  kernel.setArg(0, out);
-  kernel.setArg(1, 0.5f);
-  kernel.setArg(2, static_cast<cl_int>(rounds));
+  const cl::Kernel kernel(program, "roof_fma");
   const double seconds = bestOf(kTries, [&] {
-    context.run(kernel, cl::NDRange(items), cl::NullRange);
+    context.launch(kernel, device::WorkItems(items), out, 0.5f, rounds);
     context.finish();
   });
   return static_cast<double>(items) * rounds * 12.0 * 16.0 * 2.0 / seconds * 1e-9;

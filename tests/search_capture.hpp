@@ -1,9 +1,12 @@
 // search_capture.hpp - a capture of a few texels in a row, for tests of the search on Gram matrices.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "compress/search/gram_matrices.hpp"
@@ -38,6 +41,22 @@ inline double uniform(std::mt19937_64& random) { return static_cast<double>(rand
 /// Masks that are hats over neighbouring stretches of texels: soft ones overlap their neighbours, hard ones are 0 or 1.
 enum class Masks { kSoft, kHard };
 
+/// Soft masks that reach over `reach` neighbours on either side, each K x P.
+inline Vectors makeWideMasks(int masks, int texels_per_mask, int reach) {
+  Vectors result(static_cast<std::size_t>(masks), Vector(static_cast<std::size_t>(masks * texels_per_mask), 0.0));
+  for (std::size_t p = 0; p < result.front().size(); ++p) {
+    const double place = (static_cast<double>(p) + 0.5) / texels_per_mask - 0.5;  // in masks; mask k is centred at k
+    double sum = 0.0;
+    for (int k = 0; k < masks; ++k) {
+      double& weight = result[static_cast<std::size_t>(k)][p];
+      weight = std::max(0.0, 1.0 - 2.0 * std::abs(place - k) / (reach + 1));
+      sum += weight;
+    }
+    for (Vector& mask : result) mask[p] /= sum;
+  }
+  return result;
+}
+
 inline Vectors makeMasks(int masks, int texels_per_mask, Masks kind) {
   const int texels = masks * texels_per_mask;
   Vectors result(static_cast<std::size_t>(masks), Vector(static_cast<std::size_t>(texels), 0.0));
@@ -68,6 +87,13 @@ inline SearchCapture randomCapture(int expressions, int masks, std::uint64_t see
   return capture;
 }
 
+/// One whose masks overlap several others, as those of a face do.
+inline SearchCapture wideCapture(int expressions, int masks, int reach, std::uint64_t seed) {
+  SearchCapture capture = randomCapture(expressions, masks, seed, Masks::kSoft, /* texels_per_mask= */ 4);
+  capture.masks = makeWideMasks(masks, 4, reach);
+  return capture;
+}
+
 /// Gram matrices of the masks and of all pairs that overlap, by their definition.
 inline compress::GramMatrices gramsOf(const SearchCapture& capture) {
   compress::GramMatrices grams;
@@ -75,13 +101,15 @@ inline compress::GramMatrices gramsOf(const SearchCapture& capture) {
   grams.expressions = static_cast<int>(n_count);
   grams.slots.masks = static_cast<int>(masks);
   const auto append = [&](const std::function<double(std::size_t)>& weight) {
+    std::vector<std::pair<std::size_t, double>> squares;  // of the texels that count
+    for (std::size_t p = 0; p < texels; ++p) {
+      const double w = weight(p);
+      if (w != 0.0) squares.emplace_back(p, w * w);
+    }
     for (std::size_t n = 0; n < n_count; ++n) {
       for (std::size_t m = 0; m < n_count; ++m) {
         double sum = 0.0;
-        for (std::size_t p = 0; p < texels; ++p) {
-          const double w = weight(p);
-          if (w != 0.0) sum += w * w * capture.differences[n][p] * capture.differences[m][p];
-        }
+        for (const auto& [p, square] : squares) sum += square * capture.differences[n][p] * capture.differences[m][p];
         grams.values.push_back(sum);
       }
     }

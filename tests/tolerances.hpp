@@ -35,6 +35,14 @@ inline constexpr double kFitErrorRelative = 1e-5;
 // Normal equations of a cell, relative to its diagonal: at most 1024 products in float32, in runs of 16 and 16.
 inline constexpr double kSystemRelative = 1e-5;
 
+// Equations of a cell from those of its half cells, relative to all that these hold: their own error (kSolveRelative
+// times the condition of a half cell, tens in the tests), sixteen of them weighed.
+inline constexpr double kGatheredHalfCells = 1e-4;
+
+// Compress and stretch maps, for every expression, in 1/255: a weight of up to 1.5 that is interpolated in float32, off
+// by a few units of 2^-24, times a difference of up to 510.
+inline constexpr double kCompressStretch = 2e-3;
+
 // Grid weights after two sweeps: the system's error times the condition of a cell's block, which trust and smoothness
 // bound by about 1e4 in the tests.
 inline constexpr double kRelaxedWeight = 2e-2;

@@ -3,20 +3,20 @@
 //   minimises sum over texels t and channels c of weight_t * channel_weight_c * (texel - decoded)^2
 // Decoded are (2 a + b) / 3 and (a + b) / 2 of colours widened to 8 bits by repeating their upper ones, rounded; GPUs differ
 // from that, and among each other, by a unit or so.
-// NDRange  global {blocks to visit / LANES or more}, local any; blocks as block_texels.cl counts them
+// NDRange  global {blocks to visit / LANES or more}, local any; blocks as block_texels.h counts them
 // Buffers  tiles     in   [tile] int2     with TILES: column and row of tiles; else not read
 //          texels    in   TEXEL           laid out as `layout` says, code units 0 to 255
 //          weights   in   float           with TEXEL_WEIGHTS: of texels, not below 0; else not read
 //          blocks    out  [row][column] uint2   blocks_y rows of blocks_x
 //          decoded   out  float           with DECODED: laid out like texels; else not written
-// Defines  block_texels.cl's, CHANNELS 1 to 3
+// Defines  block_texels.h's, CHANNELS 1 to 3
 //          ROUNDS    times that colours are fitted to indices and indices to colours
 //          SWEEPS    times that colours are moved by a step of their code
 //          DECODED   if set, decoded texels are written
 
 #define DIMS 3
-#include "block_texels.cl"
-#include "block_line.cl"
+#include "block_texels.h"
+#include "block_line.h"
 
 #ifndef ROUNDS
 #define ROUNDS 2

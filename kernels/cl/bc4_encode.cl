@@ -2,13 +2,13 @@
 // bits a texel for a step between them. Blocks of 8 steps, or of 6 steps, 0 and 255, whichever is better.
 //   minimises sum over texels t of weight_t * (texel - decoded)^2 in each channel
 // Decoded are ((7 - i) a + i b) / 7 or ((5 - i) a + i b) / 5, not rounded: GPUs keep more than 8 bits.
-// NDRange  global {blocks to visit / LANES or more}, local any; blocks as block_texels.cl counts them
+// NDRange  global {blocks to visit / LANES or more}, local any; blocks as block_texels.h counts them
 // Buffers  tiles     in   [tile] int2     with TILES: column and row of tiles; else not read
 //          texels    in   TEXEL           laid out as `layout` says, code units 0 to 255
 //          weights   in   float           with TEXEL_WEIGHTS: of texels, not below 0; else not read
 //          blocks    out  [row][column][CHANNELS] uint2   blocks_y rows of blocks_x
 //          decoded   out  float           with DECODED: laid out like texels; else not written
-// Defines  block_texels.cl's, CHANNELS 1 or 2
+// Defines  block_texels.h's, CHANNELS 1 or 2
 //          ROUNDS    times that ends are fitted to indices and indices to ends
 //          SWEEPS    times that ends are moved by one
 //          STARTS    ends to start from, 1 to 4
@@ -17,7 +17,7 @@
 #ifndef CHANNELS
 #define CHANNELS 1
 #endif
-#include "block_texels.cl"
+#include "block_texels.h"
 
 #ifndef ROUNDS
 #define ROUNDS 2

@@ -1,15 +1,15 @@
 // bc7_encode.cl - BC7 blocks from texels. A line through the whole block (mode 6) is always fitted; of the other ways to
-// code it those that moments of the texels promise most for (bc7_candidates.cl): two or three lines, each through a subset
+// code it those that moments of the texels promise most for (bc7_candidates.h): two or three lines, each through a subset
 // of the texels, or one channel of its own beside a line (modes 0 to 5, with alpha 7). The best is kept.
 //   minimises sum over texels t and channels c of weight_t * channel_weight_c * (texel - decoded)^2
 // Without a fourth channel alpha decodes to 254 or 255.
-// NDRange  global {blocks to visit / LANES or more}, local any; blocks as block_texels.cl counts them
+// NDRange  global {blocks to visit / LANES or more}, local any; blocks as block_texels.h counts them
 // Buffers  tiles     in   [tile] int2     with TILES: column and row of tiles; else not read
 //          texels    in   TEXEL           laid out as `layout` says, code units 0 to 255
 //          weights   in   float           with TEXEL_WEIGHTS: of texels, not below 0; else not read
 //          blocks    out  [row][column] uint4   blocks_y rows of blocks_x
 //          decoded   out  float           with DECODED: laid out like texels; else not written
-// Defines  block_texels.cl's
+// Defines  block_texels.h's
 //          KEPT      ways that are fitted beside mode 6
 //          DOUBT     ways are passed over in blocks where none of the lanes' costs, times this, is below the error so far
 //          DOUBT     a way is passed over where no lane's cost, times this, is below its error so far
@@ -46,12 +46,12 @@
 #define SWEEPS 0
 #endif
 
-#include "block_texels.cl"
-#include "bc7_tables.cl"
-#include "block_line.cl"
-#include "bc7_fit.cl"
-#include "bc7_candidates.cl"
-#include "bc7_pack.cl"
+#include "block_texels.h"
+#include "bc7_tables.h"
+#include "block_line.h"
+#include "bc7_fit.h"
+#include "bc7_candidates.h"
+#include "bc7_pack.h"
 
 // The block coded one way in each lane.
 inline Choice code_way(const ints way, const floats* x, const floats* w, const floats mean[DIMS],

@@ -19,6 +19,7 @@
 //      quad of texels 0..3       0  1  2  3 of plane p | of plane p + 1 | of plane p + 2 | of plane p + 3
 //      a plane's texels 0..15    bytes 4 j to 4 j + 3 of the four quads of planes p to p + 3, j = plane - p
 //
+//
 // NDRange   global {tiles * 16 / LANES}, rounded up to the local size; a work-item has LANES columns of one tile
 // Buffers   textures  in   [tile]: neutral [row 8][channel][16] SAMPLE, then codes [row 8] of planes [channel][C]:
 //                          QUAD_PLANES of them as [plane / 4][quad 4][plane % 4][4], the others as [16] CODE. Tiles are
@@ -27,17 +28,20 @@
 //           encoding  in   [3][C][channels]           float  scale_ic in steps of a sample, zero_ic and
 //                                    -scale_ic * (zero_ic + CODE_BIAS for planes in quads)
 //           frame     out  [8 * tile rows][16 * tiles_x][channels] FRAME  interleaved
-// Defines   CHANNELS 1..4, DIFFERENCES 1..8, SCALE s >= 1, LANES 16 (CPU) or 1 (GPU),
-//           SAMPLE_TYPE 0 uchar, 1 ushort, 2 float; CODE_BITS 8 or 16
-//           CLANG_BUILTINS 1: the compiler is clang (PoCL), which knows prefetches, and shuffles of 64 bytes
-//           QUAD_PLANES 0, or with CLANG_BUILTINS, LANES 16, 8-bit samples and codes a multiple of 4
-//           VALUES 0: FRAME is SAMPLE; 1: FRAME is float, T in 1/255 of full scale as it is before rounding
+// Defines   CHANNELS        1 to 4 (3)
+//           DIFFERENCES     C, 1 to 8 (4)
+//           SCALE           s, texels to a cell (8)
+//           LANES           16 on CPUs, 1 on GPUs (16)
+//           SAMPLE_TYPE     0 uchar, 1 ushort, 2 float (0)
+//           CODE_BITS       8 or 16 (8)
+//           CLANG_BUILTINS  1: the compiler is clang (PoCL), which knows prefetches, and shuffles of 64 bytes (0)
+//           QUAD_PLANES     0, or with CLANG_BUILTINS, LANES 16, 8-bit samples and codes a multiple of 4 (0)
+//           VALUES          0: FRAME is SAMPLE; 1: FRAME is float, T in 1/255 of full scale, before rounding (0)
 // Rounding  integers: half up, clamped to the type; floats: neither, and I_0 is copied where the sum is 0;
 //           values: neither, exact where the sum is 0 in 8 bits
 
-#ifndef LANES
-#define LANES 16
-#endif
+#include "lanes.h"
+
 #ifndef CHANNELS
 #define CHANNELS 3
 #endif
@@ -63,28 +67,21 @@
 #define CODE_BITS 8
 #endif
 
-#define TILE_WIDTH 16
-#define TILE_ROWS 8
+#define TILE_WIDTH FACEZIP_TILE_SIDE
+#define TILE_ROWS FACEZIP_BLEND_TILE_ROWS
 #define TILES_AHEAD 2  // that are asked for while one is blended
-#define CODE_BIAS 32768.0f
+#define CODE_BIAS FACEZIP_CODE_BIAS
 #define PLANES (DIFFERENCES * CHANNELS)
 // Cells touched by 16 columns and by 8 rows of texels, wherever the tile lies.
 #define CELL_COLUMNS ((TILE_WIDTH - 1) / SCALE + 3)
 #define CELL_ROWS ((TILE_ROWS - 1) / SCALE + 3)
 
-#if LANES == 1
-#define VECTOR(type) type
-#else
-#define VECTOR(type) JOIN(type, 16)
-#endif
-typedef VECTOR(float) floats;
 #if CODE_BITS == 16
 #define CODE ushort
 #else
 #define CODE uchar
 #endif
 typedef VECTOR(CODE) codes;
-#define TO_FLOATS JOIN(convert_, VECTOR(float))
 
 #if CLANG_BUILTINS
 // 16 texels in one register of 512 bits. OpenCL C ends at 16 lanes; clang does not.

@@ -4,12 +4,12 @@
 // Buffers  tiles   in   [tile] int2   with TILES: column and row of tiles; else not read
 //          blocks  in   [row][column] of 8 bytes (BC1, BC4) or 16   blocks_y rows of blocks_x
 //          texels  out  TEXEL         laid out as `layout` says, code units 0 to 255; the first CHANNELS of the format's
-// Defines  block_texels.cl's, TEXEL float, or uchar with WHOLE: what is not whole is rounded, halves upwards
+// Defines  block_texels.h's, TEXEL float, or uchar with WHOLE: what is not whole is rounded, halves upwards
 //          FORMAT  1, 4, 5 or 7
 
 #define LANES 1
-#include "block_texels.cl"
-#include "bc7_tables.cl"
+#include "block_texels.h"
+#include "bc7_tables.h"
 
 #ifndef FORMAT
 #define FORMAT 7

@@ -2,17 +2,27 @@
 //   textures[tile][i][c][t] = active(t) sum_n I_ni(t) Delta_n(t, c),   i = 0: compression, 1: stretch
 // I_ni are the normalised influences, interpolated linearly from the weight grid as the run time does. Where they sum to 1
 // over n this is the weighted mean of the expressions' textures, less the neutral.
+//
 // NDRange  global {256 / ROWS, tiles}, local {256 / ROWS, 1}: one work-item per ROWS texels of a column
 // Buffers  tiles        in   [tile] int2        column of tiles in the image, row of tiles in the band
 //          active       in   [tile][256] float  1 where a texture is wanted (gutter included), else 0
 //          differences  in   [tile][EXPRESSIONS][channel][256] DIFF_T, units of 1/255
 //          influence    in   [cell row][cell column][TEXTURES][EXPRESSION_LANES] float, cell rows from first_cell_row on
 //          textures     out  [tile][TEXTURES][channel][256] float, units of 1/255
-// Defines  CHANNELS, DIFF_T as in difference.cl; TEXTURES, EXPRESSIONS, EXPRESSION_LANES, WEIGHT_SCALE as in
-//          difference_fit.cl; ROWS: 1, 2, 4, 8 or 16
+// Defines  CHANNELS, DIFF_T                         tiles.h
+//          TEXTURES, EXPRESSIONS, EXPRESSION_LANES  grid_weights.h
+//          WEIGHT_SCALE                             weight_grid.h
+//          ROWS                                     1, 2, 4, 8 or 16 (16)
 // Sums     expressions in order
 
-#define CELL_FLOATS (TEXTURES * EXPRESSION_LANES)
+#include "grid_weights.h"
+#include "tiles.h"
+#include "weight_grid.h"
+
+// Texels of a work-item, in a column: more share the look-up of their cells, on GPUs fewer fill the device.
+#ifndef ROWS
+#define ROWS 16
+#endif
 
 kernel void compress_stretch(global const int2* tiles, global const float* active, global const DIFF_T* differences,
                              global const float* influence, global float* textures, const int first_row,

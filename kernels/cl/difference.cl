@@ -1,20 +1,28 @@
 // difference.cl - differences of the expressions to the neutral, Delta_n = I_n - I_0 (FaceZip, Eq. 1 and 2), as tiles
-//   differences[tile][n][c][t] = (samples[n + 1][y][x][c] - samples[0][y][x][c]) * SAMPLE_UNIT,  0 outside the band
+//   differences[tile][n][c][t] = (samples[n + 1][y][x][c] - neutral[y][x][c]) * SAMPLE_UNIT,  0 outside the band
+//
 // NDRange  global {16, tiles, expressions}, local {16, 1, 1}: one work-item per row of 16 texels of a tile
 // Buffers  tiles        in   [tile] int2      column and row of tiles in the band
 //          samples      in   [1 + expressions][rows][width][CHANNELS] SAMPLE_T, image 0 is the neutral
+//          neutral      in   [rows][width][CHANNELS] NEUTRAL_T: the samples' own, or what a coded one decodes to
 //          differences  out  [tile][expression][channel][256] DIFF_T, units of 1/255 of full scale
-// Defines  CHANNELS     1 to 4
-//          SAMPLE_T     uchar, ushort or float
-//          SAMPLE_UNIT  factor from a sample to 1/255 of full scale; not defined for uchar, whose differences stay integers
-//          DIFF_T       short for uchar samples (exact), float for all others
+// Defines  CHANNELS, DIFF_T  tiles.h
+//          SAMPLE_T          uchar, ushort or float (uchar)
+//          SAMPLE_UNIT       factor from a sample to 1/255 of full scale; not defined for uchar, whose differences to
+//                            a neutral of uchar stay integers
+//          NEUTRAL_T         SAMPLE_T, or float in units of 1/255 with NEUTRAL_DECODED
+//          NEUTRAL_DECODED   if set, that type; DIFF_T is float then
 
-#ifndef CHANNELS
-#define CHANNELS 3
-#endif
+#include "tiles.h"
+
 #ifndef SAMPLE_T
 #define SAMPLE_T uchar
-#define DIFF_T short
+#endif
+
+#ifdef NEUTRAL_DECODED
+#define NEUTRAL_T float
+#else
+#define NEUTRAL_T SAMPLE_T
 #endif
 
 #define SAMPLE16 JOIN(SAMPLE_T, 16)
@@ -22,7 +30,9 @@
 #define CONVERT16 JOIN(convert_, DIFF16)
 
 // Subtracts before splitting: one split instead of two, and 16-bit lanes have permutes that bytes lack.
-#ifdef SAMPLE_UNIT
+#if defined(NEUTRAL_DECODED) && defined(SAMPLE_UNIT)
+#define DIFFERENCE(convert, expression, neutral) (convert(expression) * SAMPLE_UNIT - (neutral))
+#elif defined(SAMPLE_UNIT)
 #define DIFFERENCE(convert, expression, neutral) ((convert(expression) - convert(neutral)) * SAMPLE_UNIT)
 #else
 #define DIFFERENCE(convert, expression, neutral) (convert(expression) - convert(neutral))
@@ -58,7 +68,7 @@ static void store_planes(const DIFF16* x, global DIFF_T* row) {
 }
 
 // A row of which only the first `inside` texels (0 to 15) belong to the band.
-static void edge_row(global const SAMPLE_T* expression, global const SAMPLE_T* neutral, int inside, DIFF16* x) {
+static void edge_row(global const SAMPLE_T* expression, global const NEUTRAL_T* neutral, int inside, DIFF16* x) {
   DIFF_T* samples = (DIFF_T*)x;
   for (int i = 0; i < TILE_SIDE * CHANNELS; ++i) {
     samples[i] = 0;
@@ -66,8 +76,8 @@ static void edge_row(global const SAMPLE_T* expression, global const SAMPLE_T* n
   }
 }
 
-kernel void difference(global const int2* tiles, global const SAMPLE_T* samples, global DIFF_T* differences, int width,
-                       int rows) {
+kernel void difference(global const int2* tiles, global const SAMPLE_T* samples, global const NEUTRAL_T* neutrals,
+                       global DIFF_T* differences, int width, int rows) {
   const int row = (int)get_global_id(0);
   const ulong tile = get_global_id(1);
   const ulong n = get_global_id(2);
@@ -78,8 +88,8 @@ kernel void difference(global const int2* tiles, global const SAMPLE_T* samples,
 
   const ulong at = ((ulong)min(y, rows - 1) * (ulong)width + (ulong)x) * CHANNELS;
   const ulong image = (ulong)rows * (ulong)width * CHANNELS;
-  global const SAMPLE_T* neutral = samples + at;
-  global const SAMPLE_T* expression = neutral + (n + 1) * image;
+  global const NEUTRAL_T* neutral = neutrals + at;
+  global const SAMPLE_T* expression = samples + at + (n + 1) * image;
   DIFF16 rows_of_16[CHANNELS];
   if (inside == TILE_SIDE) {
     for (int c = 0; c < CHANNELS; ++c) rows_of_16[c] = DIFFERENCE(CONVERT16, vload16(c, expression), vload16(c, neutral));

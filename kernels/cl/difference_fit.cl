@@ -2,6 +2,9 @@
 //   D = argmin sum_n |Delta_n - D^T w_n|^2 + ridge |D|^2,   w_n the bilinear weight map of expression n (FaceZip, Eq. 8)
 // A C x C system per texel, by Cholesky. With CODES the textures are rounded to their encoding while the system is
 // substituted back (Babai's nearest plane): a channel that is solved for after another makes up for that one's rounding.
+// With FACTORS the systems are not solved but kept, for textures that are coded in blocks one after the other
+// (difference_target.cl).
+//
 // NDRange  global {256 / (LANES * ROWS), tiles}, local any
 // Buffers  tiles          in   [tile] int2        column and row of tiles in the band
 //          texel_weights  in   [tile][256] float  weight of a texel in every sum, 0 outside the covered texels
@@ -9,33 +12,37 @@
 //          differences    in   [tile][N][channel][256] DIFF_T, units of 1/255
 //          weights        in   [row][column][C][lanes] float   W_n of the cell rows from first_cell_row on, n innermost
 //          encoding       in   [C][channel] float2  scale, zero code (with CODES)
-//          textures       out  [tile][C][channel][256] float, units of 1/255
+//          textures       out  [tile][C][channel][256] float, units of 1/255; with FACTORS
+//                              [tile][FACTOR_PLANES][256] float as difference_factors.h has them
 //          errors         out  [tile][item] float2  sum over the item's covered texels of |Delta - D^T w|^2: times the
-//                                                   texel weight, and plain
-// Defines  CHANNELS, DIFF_T  as in difference.cl
-//          TEXTURES          C, 1 to 8
-//          EXPRESSIONS       N
-//          EXPRESSION_LANES  N rounded up as `weights` has it
-//          WEIGHT_SCALE      texels per cell
-//          LANES, ROWS       texels of a work-item: 16 columns by 16 rows on CPUs, one on GPUs
-//          CODES             if set, the largest code: 255 or 65535
+//                                                   texel weight, and plain (not with FACTORS)
+// Defines  CHANNELS, DIFF_T                         tiles.h
+//          TEXTURES, EXPRESSIONS, EXPRESSION_LANES  grid_weights.h
+//          WEIGHT_SCALE                             weight_grid.h
+//          LANES, ROWS  texels of a work-item: 16 columns by 16 rows on CPUs (16, 16), one on GPUs
+//          CODES        if set, the largest code: 255 or 65535
+//          FACTORS      if set, that output
 // Sums     fixed order: expressions; rows and lanes of an item
 
+#include "cholesky.h"
+#include "difference_factors.h"
+#include "tiles.h"
+#include "weight_grid.h"
+
+#ifndef ROWS
+#define ROWS 16
+#endif
+
+typedef VECTOR(int) ints;
+typedef VECTOR(DIFF_T) diffs;
 #if LANES == 1
-typedef int ints;
-typedef DIFF_T diffs;
-#define TO_FLOATS convert_float
 #define SUM_LANES(value) (value)
 #define CELL_COLUMNS 2
 #else
-typedef int16 ints;
-typedef JOIN(DIFF_T, 16) diffs;
-#define TO_FLOATS convert_float16
 #define SUM_LANES sum_of_16
 #define CELL_COLUMNS CELLS_OF_16
 #endif
 #define PLANE (TILE_TEXELS / LANES)  // vectors between the planes of a tile
-#define CELL_FLOATS (TEXTURES * EXPRESSION_LANES)
 
 #if LANES == 1
 // One weight at one texel. A work-item that has a single texel has no use for its neighbours' rows of cells.
@@ -186,6 +193,29 @@ kernel void difference_fit(global const int2* restrict tiles, global const float
     for (int p = 0; p < PAIRS; ++p) l[p] = a[p];
     factor(l, ridge);
     const ints wanted = active[tile * PLANE + line] > (floats)(0.0f);
+#ifdef FACTORS
+    global floats* factors = textures + tile * (ulong)(FACTOR_PLANES * PLANE) + line;
+#pragma unroll
+    for (int i = 0; i < TEXTURES; ++i) {
+#pragma unroll
+      for (int j = 0; j <= i; ++j) {
+        factors[LOWER(i, j) * PLANE] = wanted ? l[LOWER(i, j)] : (floats)(i == j ? 1.0f : 0.0f);
+      }
+    }
+#pragma unroll
+    for (int c = 0; c < CHANNELS; ++c) {
+      floats y[TEXTURES];
+#pragma unroll
+      for (int i = 0; i < TEXTURES; ++i) y[i] = wanted ? b[i][c] : (floats)(0.0f);
+      substitute_forward(l, y);
+#pragma unroll
+      for (int i = 0; i < TEXTURES; ++i) {
+        factors[(SIDE_PLANES + i * CHANNELS + c) * PLANE] = y[i];
+        e -= y[i] * y[i];
+      }
+    }
+    factors[LEFT_PLANE * PLANE] = fmax(e, (floats)(0.0f));
+#else
     floats d[TEXTURES][CHANNELS];
 #pragma unroll
     for (int c = 0; c < CHANNELS; ++c) {
@@ -203,6 +233,7 @@ kernel void difference_fit(global const int2* restrict tiles, global const float
     const floats error = squared_error(a, b, d, e);
     error_sum.x += SUM_LANES(error * weight);
     error_sum.y += SUM_LANES(weight > (floats)(0.0f) ? error : (floats)(0.0f));
+#endif
   }
   errors[tile * items + item] = error_sum;
 }

@@ -2,6 +2,7 @@
 //   textures[tile][i][c][t] = sum_n (sum_k M_k(t) coefficients[k][n][i]) * Delta_n(t, c)
 // The inner sum is the weight of expression n in texture i at texel t. A work-item keeps all textures and channels of its
 // texels in registers: a mask that was loaded serves 2 * TEXTURES multiply-adds, a difference TEXTURES of them.
+//
 // NDRange  global {256 / WIDTH, tiles}, local {256 / WIDTH, 1}: one work-item per WIDTH texels of a row
 // Buffers  mask_begin    in   [tile + 1] int
 //          mask_index    in   [entry] int          mask k of an entry, 0 <= k < K
@@ -9,15 +10,13 @@
 //          coefficients  in   [K][N rounded up to 2][TEXTURES] float, 0 past N
 //          differences   in   [tile][N][channel][256] DIFF_T, units of 1/255
 //          textures      out  [tile][TEXTURES][channel][256] float, units of 1/255; 0 where no mask is active
-// Defines  CHANNELS, DIFF_T  as in difference.cl
-//          TEXTURES          C, 1 to 8
-//          WIDTH             texels of a work-item: 16 fills the registers of a CPU, 4 keeps to those of a GPU's work-item
+// Defines  CHANNELS, DIFF_T  tiles.h
+//          TEXTURES          C, 1 to 8 (4)
+//          WIDTH             texels of a work-item: 16 fills the registers of a CPU (16), 4 keeps to those of a GPU's
 // Sums     fixed order: masks of the tile, then expressions; the same for every WIDTH
 
-#ifndef CHANNELS
-#define CHANNELS 3
-#define DIFF_T short
-#endif
+#include "tiles.h"
+
 #ifndef TEXTURES
 #define TEXTURES 4
 #endif

@@ -4,17 +4,16 @@
 // middle between two may get either.
 // Two kernels: difference_texture_clear writes the code of 0 everywhere, since tiles without work are not in the list;
 // difference_texture_encode then writes the texels of the tiles, where D is 0 outside the masks.
+//
 // NDRange  clear: global {width, rows, textures}, local any.  encode: global {16, textures, tiles}, local {16, 1, 1}
 // Buffers  tiles     in   [tile] int2   column and row of tiles in the band
 //          textures  in   [tile][texture][CHANNELS][256] float, units of 1/255
 //          encoding  in   [texture][CHANNELS] float2  (1 / scale or 0 where scale is 0, offset)
 //          codes     out  [texture][rows][width][CHANNELS] CODE
-// Defines  CHANNELS   1 to 4
-//          CODE_BITS  8 (CODE is uchar) or 16 (ushort)
+// Defines  CHANNELS   tiles.h
+//          CODE_BITS  8, CODE is uchar (8), or 16, ushort
 
-#ifndef CHANNELS
-#define CHANNELS 3
-#endif
+#include "tiles.h"
 
 #ifndef CODE_BITS
 #define CODE_BITS 8

@@ -1,10 +1,13 @@
 // difference_texture_range.cl - smallest and largest value of the difference textures in each tile, for their encoding
 //   ranges[tile][i][c] = (min, max) over the texels where a mask of the tile is above 0; (INFINITY, -INFINITY) if none is
+//
 // NDRange  global {tiles}, local {1}
 // Buffers  mask_begin    in   [tile + 1] int
 //          mask_weights  in   [entry][256] float   0..1, gutter included
 //          textures      in   [tile][planes][256] float, plane = texture * channels + channel
 //          ranges        out  [tile][planes] float2
+
+#include "tiles.h"
 
 // Rows of the tile that any mask covers, as 16 lanes of -1 (covered) or 0.
 static void covered_rows(global const float16* masks, int count, int16* covered) {

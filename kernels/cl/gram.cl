@@ -10,6 +10,7 @@
 //
 // The products are formed once for all slots of a tile: with S slots that is 16 (S + channels) multiply-adds a texel
 // and block, a third of one weighted product per slot. P and W of a part stay in the first-level cache.
+//
 // NDRange  global {runs}, local {1}
 // Buffers  mask_begin     in   [tile + 1] int
 //          mask_weights   in   [entry][256] float, 0..1
@@ -20,15 +21,13 @@
 //          slot_begin     in   [tile + 1] int   first entry of a tile in slots
 //          slots          in   [entry] int2     row; masks a and b of the tile as (a + 1) | (b + 1) << 16, 0 for none
 //          partial        out  [row][block_count][16] float
-// Defines  CHANNELS, DIFF_T  as in difference.cl
-//          PART_TEXELS       texels whose products are kept at a time, a multiple of 16 that divides 256
-//          SLOT_CHUNK        slots whose weights are kept at a time, a multiple of 8
+// Defines  CHANNELS, DIFF_T  tiles.h
+//          PART_TEXELS       texels whose products are kept at a time, a multiple of 16 that divides 256 (64)
+//          SLOT_CHUNK        slots whose weights are kept at a time, a multiple of 8 (64)
 // Sums     fixed order: texels of a part, parts and tiles of a run
 
-#ifndef CHANNELS
-#define CHANNELS 3
-#define DIFF_T short
-#endif
+#include "tiles.h"
+
 #ifndef PART_TEXELS
 #define PART_TEXELS 64
 #endif

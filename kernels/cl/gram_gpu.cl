@@ -4,18 +4,17 @@
 // A work-group does one block of one run, WGS texels at a time: each work-item forms the 16 products and the SLOTS weights
 // of one texel in local memory; then work-item (lane, g) adds up lane of the block under the slots 8 g .. 8 g + 7:
 // three local loads (one product, two float4 of weights shared by 16 neighbours) for eight multiply-adds.
+//
 // NDRange  global {WGS * block_count, runs}, local {WGS, 1}
 // Buffers  as gram.cl
-// Defines  CHANNELS, DIFF_T  as in difference.cl
-//          WGS               work-group size: 16, 32 or 64; 16 lanes times WGS / 16 groups of slots
+// Defines  CHANNELS, DIFF_T  tiles.h
+//          WGS               work-group size: 16, 32 or 64; 16 lanes times WGS / 16 groups of slots (64)
 // Local    4 * WGS * (17 + SLOTS + 4) bytes, 13.6 KB at WGS 64
 // Sums     fixed order: texels of a tile, tiles of a run. No float atomics.
 // The speed on a GPU is reasoned, not measured: written for coalesced loads and few local accesses a multiply-add.
 
-#ifndef CHANNELS
-#define CHANNELS 3
-#define DIFF_T short
-#endif
+#include "tiles.h"
+
 #ifndef WGS
 #define WGS 64
 #endif

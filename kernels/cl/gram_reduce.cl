@@ -1,5 +1,6 @@
 // gram_reduce.cl - adds the partial sums of the Gram matrices over the runs of a launch (gram.cl, gram_gpu.cl)
 //   sums[slot][lane] = (high, low): high + low is the compensated sum (Neumaier) of the rows of a slot
+//
 // NDRange  global {blocks * 16, slots}, local {16, 1}
 // Buffers  partial    in   [row][blocks * 16] float
 //          row_begin  in   [slot + 1] int   first entry of a slot in rows

@@ -5,13 +5,16 @@
 //   S = sum_p t D Delta^T = Q G,   B = sum_p t D D^T = Q G Q^T,   Q = A^-1 w,   A = w w^T + ridge
 // In this order rounding leaves B positive where weights hardly use a texture: A^-1 (w G w^T) A^-1 would magnify it by the
 // square of 1 / ridge.
+//
 // NDRange  global {groups, half rows}, local {1, 1}: one work-item per 16 half cells side by side, one in each lane
 // Buffers  grams    in   as half_cell_gram.cl writes it
 //          weights  in   [row][column][C][lanes] float   W_n of the cell rows from first_cell_row on, n innermost
 //          halves   out  [half row][half column][HALF_ENTRIES] float   B, C (C + 1) / 2 rounded up to 16; then S, [C][lanes]
 //          errors   out  [half row][group] float   sum_p t |Delta - D^T w|^2 over the group
-// Defines  EXPRESSIONS, EXPRESSION_LANES, TEXTURES  as in difference_fit.cl
+// Defines  TEXTURES, EXPRESSIONS, EXPRESSION_LANES  grid_weights.h
 // Sums     fixed order: expressions
+
+#include "cholesky.h"
 
 #define GRAM(n, m) grams[(m) * ((m) + 1) / 2 + (n)]  // n <= m
 

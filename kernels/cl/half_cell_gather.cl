@@ -1,11 +1,15 @@
 // half_cell_gather.cl - the equations of every cell of the weight grid (weight_system.cl) from those of its half cells
 // Half cell 2 q of a row weighs 3/4 in cell q and 1/4 in cell q - 1, half cell 2 q + 1 in q and q + 1; beyond the edge the
 // outer cell repeats.
+//
 // NDRange  global {1 + C * lanes / 16, columns, rows}, local any: the blocks of a cell, then 16 right-hand sides each
 // Buffers  halves  in   as half_cell_fit.cl writes it, half rows from first_half_row on
 //          system  out  [row][column][ENTRIES] float   cell rows from first_cell_row on
-// Defines  TEXTURES, EXPRESSION_LANES  as in difference_fit.cl
+// Defines  TEXTURES, EXPRESSION_LANES  grid_weights.h
 // Sums     fixed order: half cells by row, then column
+
+#include "common.h"
+#include "grid_weights.h"
 
 // What half cell h weighs in cell q of `cells`.
 inline float share(const int h, const int q, const int cells) {

@@ -2,17 +2,26 @@
 //   G_nm(h) = keep * G_nm(h) + metric_weight * sum over texels p of h of t(p) Delta_n(p) . Delta_m(p)
 // A half cell h is a square of HALF x HALF texels, half a cell along each axis: inside it the weights hardly vary, and all
 // that fitting them needs of its texels is this matrix (half_cell_fit.cl).
+//
 // NDRange  global {groups, half rows}, local {1, 1}: one work-item per 16 half cells side by side, HALF tiles wide
 // Buffers  tile_at        in      [tile rows][tile columns] int   index of a tile of the band, -1 where there is none
 //          texel_weights  in      [tile][256] float
 //          differences    in      [tile][N][channel][256] DIFF_T, units of 1/255
 //          grams          in out  [half row][group][m (m + 1) / 2 + n][16] float, n <= m; half rows from first_half_row on
-// Defines  CHANNELS, DIFF_T, EXPRESSIONS  as in difference_fit.cl
-//          HALF  texels along a half cell: 2, 4, 8 or 16
+// Defines  CHANNELS, DIFF_T  tiles.h
+//          EXPRESSIONS       grid_weights.h
+//          HALF              texels along a half cell: 2, 4, 8 or 16 (4)
 // Sums     fixed order: rows and channels, pairs of neighbouring lanes; four rows at a time, tile by tile
 
+#include "grid_weights.h"
+#include "tiles.h"
+
+#ifndef HALF
+#define HALF 4
+#endif
+
 #define DIFFS JOIN(DIFF_T, 16)
-#define BLOCK 4                                                // a register block is BLOCK x BLOCK products
+#define BLOCK 4  // a register block is BLOCK x BLOCK products
 #define BLOCKS ((EXPRESSIONS + BLOCK - 1) / BLOCK)
 #define ROWS_AT_ONCE (HALF < 4 ? HALF : 4)
 #define VALUES (ROWS_AT_ONCE * CHANNELS)

@@ -15,34 +15,22 @@
 // Empty    a cluster that loses all its fragments takes the one farthest from its centre; it stays empty where there is
 //          none but coincident fragments, so with N < C the last clusters are empty
 
+#include "common.h"
+#include "counter_hash.h"
+
 #ifndef CLUSTERS
 #define CLUSTERS 4
 #endif
 #ifndef BLOCKS
 #define BLOCKS 2
 #endif
-#define LANES 16
+#define LANES FACEZIP_VECTOR
 #define PADDED (LANES * BLOCKS)
 
 // A squared distance below this share of the squared lengths it is the difference of is rounding: fragments coincide.
 // Between two fragments it is three operations of 2^-24 each; to a centre it is the running sums of up to 128 members.
 #define COINCIDENT_FRAGMENTS 1e-6f
 #define COINCIDENT_CENTRE 1e-5f
-
-// The same as counterHash() in host/src/compress/search/counter_hash.hpp.
-ulong mix_bits(ulong x) {
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9UL;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebUL;
-  return x ^ (x >> 31);
-}
-
-ulong counter_hash(ulong seed, ulong major, ulong minor, ulong draw) {
-  const ulong golden = 0x9e3779b97f4a7c15UL;
-  ulong hash = mix_bits(seed + golden);
-  hash = mix_bits(hash + (major + 1) * golden);
-  hash = mix_bits(hash + (minor + 1) * golden);
-  return mix_bits(hash + (draw + 1) * golden);
-}
 
 // Index n drawn with probability weight[n] / total.
 int draw_by_weight(const float* weight, int fragments, float total, ulong bits) {
@@ -83,10 +71,10 @@ void seed_clusters(global const float* gram, int fragments, ulong seed, int mask
     nearest[n] = MAXFLOAT;
     label[n] = 0;
   }
-  const ulong first = ((counter_hash(seed, mask, restart, 0) >> 32) * (ulong)fragments) >> 32;
+  const ulong first = ((facezip_counter_hash(seed, mask, restart, 0) >> 32) * (ulong)fragments) >> 32;
   float total = join_seed(gram, fragments, (int)first, 0, nearest, label);
   for (int c = 1; c < CLUSTERS && total > 0.0f; ++c) {
-    const int next = draw_by_weight(nearest, fragments, total, counter_hash(seed, mask, restart, c));
+    const int next = draw_by_weight(nearest, fragments, total, facezip_counter_hash(seed, mask, restart, c));
     total = join_seed(gram, fragments, next, c, nearest, label);
   }
 }

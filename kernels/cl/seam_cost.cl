@@ -12,13 +12,15 @@
 // Defines  CLUSTERS    C, 1 to 8 (4)
 //          BLOCKS      blocks of 16 rows, PADDED = 16 * BLOCKS >= fragments + 1 (2)
 
+#include "common.h"
+
 #ifndef CLUSTERS
 #define CLUSTERS 4
 #endif
 #ifndef BLOCKS
 #define BLOCKS 2
 #endif
-#define LANES 16
+#define LANES FACEZIP_VECTOR
 #define PADDED (LANES * BLOCKS)
 
 // 1 / number of members of `cluster`, 0 for an empty one.

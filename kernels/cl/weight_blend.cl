@@ -1,6 +1,7 @@
 // weight_blend.cl - the weight maps of all expressions, blended with the blendshape weights (FaceZip, Eq. 8, bracket)
 //   w_i(q) = sum over active n of beta_n W_n[i](q),   W = scale_i * code + offset_i
 //          = scale_i * sum beta_n code + offset_i * sum beta_n, all of it times the cell's gain
+//
 // NDRange   global {blocks * 16 / LANES}, rounded up to the local size; a work-item has LANES cells of one block
 // Buffers   codes     in   [blocks][N][C][16] uchar  16 neighbouring cells of the row-major cell grid are a block
 //           active    in   [count]            int    expressions whose beta is not 0, rising
@@ -8,31 +9,21 @@
 //           encoding  in   [2][C]             float  scale_i, then offset_i * sum beta_n
 //           weights   out  [blocks][C][16]    float
 //           gain      in   [blocks][16]       float  1 where nobody tuned
-// Defines   LANES        16 on CPUs (one AVX-512 register), 1 on GPUs (neighbouring work-items read neighbouring bytes)
-//           DIFFERENCES  C, 1..8
-//           PREFETCH     1: codes are asked for a block ahead, where the compiler is clang (PoCL)
+// Defines   LANES        16 on CPUs (16), 1 on GPUs (neighbouring work-items read neighbouring bytes)
+//           DIFFERENCES  C, 1 to 8 (4)
+//           PREFETCH     1: codes are asked for a block ahead, where the compiler is clang (PoCL) (0)
 // Sums      in rising n: same bits whichever range of blocks is asked for
 
-#ifndef LANES
-#define LANES 16
-#endif
+#include "lanes.h"
+
 #ifndef DIFFERENCES
 #define DIFFERENCES 4
 #endif
-
 #ifndef PREFETCH
 #define PREFETCH 0
 #endif
 
-#if LANES == 1
-typedef float floats;
-typedef uchar bytes;
-#define TO_FLOATS convert_float
-#else
-typedef float16 floats;
-typedef uchar16 bytes;
-#define TO_FLOATS convert_float16
-#endif
+typedef VECTOR(uchar) bytes;
 
 kernel void weight_blend(global const uchar* restrict codes, global const int* restrict active,
                          global const float* restrict beta, global const float* restrict encoding,

@@ -11,11 +11,13 @@
 //          weights       out  [expressions][cells][C] uchar   floor(255 W + 1/2), at most 255
 // Defines  CLUSTERS      C, 1 to 8 (4)
 
+#include "common.h"
+
 #ifndef CLUSTERS
 #define CLUSTERS 4
 #endif
-#define LANES 16
-#define CELLS 16
+#define LANES FACEZIP_VECTOR
+#define CELLS FACEZIP_WEIGHT_MAP_CELLS
 // Four bytes travel as one int, the first in the lowest byte.
 #if CLUSTERS == 4 && defined(__ENDIAN_LITTLE__)
 #define PACKED

@@ -3,14 +3,18 @@
 //                        + trust * |W_n(q) - start_n(q)|^2      with all other cells as they are
 // Cells couple to their 8 neighbours only, so the cells of one of 4 colours (parity of row and column) do not touch each
 // other: each step is exact and lowers the objective, whatever the order of the work-items.
+//
 // NDRange  global {EXPRESSION_LANES / LANES, columns of the colour, rows of the colour}, local any
 // Buffers  system   in      [row][column][ENTRIES] float   cell rows from first_cell_row on
 //          start    in      [row][column][C][lanes] float
 //          weights  in out  the same
-// Defines  TEXTURES, EXPRESSION_LANES  as in difference_fit.cl
-//          LANES    expressions of a work-item: 16 on CPUs, 1 on GPUs
+// Defines  TEXTURES, EXPRESSION_LANES  grid_weights.h
+//          LANES                       expressions of a work-item: 16 on CPUs (16), 1 on GPUs
 
-#define PAIR(i, j) ((i) > (j) ? (i) * ((i) + 1) / 2 + (j) : (j) * ((j) + 1) / 2 + (i))
+#define MATRIX_T float  // a cell has one matrix for all expressions
+#include "cholesky.h"
+
+#define PAIR(i, j) ((i) > (j) ? LOWER(i, j) : LOWER(j, i))
 #define PLANE (EXPRESSION_LANES / LANES)
 
 // residual -= (block + smoothness on the diagonal, which pulls towards the neighbour) * W(neighbour)
@@ -25,31 +29,15 @@ static void add_neighbour(global const float* restrict block, const float smooth
   }
 }
 
-// x = (block + diagonal)^-1 x by Cholesky.
-static void solve_block(global const float* restrict block, const float diagonal, floats* x) {
-  float l[TEXTURES][TEXTURES];
+// x = (block + diagonal)^-1 x.
+static void solve_block(global const float* restrict block, const float diagonal, floats x[TEXTURES]) {
+  float l[PAIRS];
 #pragma unroll
-  for (int i = 0; i < TEXTURES; ++i) {
+  for (int p = 0; p < PAIRS; ++p) l[p] = block[p];
+  factor(l, diagonal);
+  substitute_forward(l, x);
 #pragma unroll
-    for (int j = 0; j <= i; ++j) {
-      float value = block[PAIR(i, j)] + (i == j ? diagonal : 0.0f);
-#pragma unroll
-      for (int k = 0; k < j; ++k) value -= l[i][k] * l[j][k];
-      l[i][j] = i == j ? 1.0f / sqrt(fmax(value, diagonal)) : value * l[j][j];
-    }
-  }
-#pragma unroll
-  for (int i = 0; i < TEXTURES; ++i) {
-#pragma unroll
-    for (int j = 0; j < i; ++j) x[i] -= l[i][j] * x[j];
-    x[i] *= l[i][i];
-  }
-#pragma unroll
-  for (int i = TEXTURES - 1; i >= 0; --i) {
-#pragma unroll
-    for (int j = i + 1; j < TEXTURES; ++j) x[i] -= l[j][i] * x[j];
-    x[i] *= l[i][i];
-  }
+  for (int i = TEXTURES - 1; i >= 0; --i) x[i] = substitute_back(l, x, i);
 }
 
 kernel void weight_relax(global const float* restrict system, global const floats* restrict start,

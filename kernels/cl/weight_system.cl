@@ -5,6 +5,7 @@
 // blocks of C (C + 1) / 2 numbers a cell hold the matrix.
 // weight_system    sums over one tile, for the cells that its texels interpolate between
 // weight_system_gather.cl adds the tiles up
+//
 // NDRange  global {1, tiles}, local {1, 1}
 // Buffers  tiles          in   [tile] int2
 //          texel_weights  in   [tile][256] float
@@ -12,8 +13,14 @@
 //          textures       in   [tile][C][channel][256] float, D in units of 1/255
 //          partial        out  [tile][CELLS_OF_16 rows][CELLS_OF_16 columns][ENTRIES] float: blocks (self; right; below;
 //                              diagonal) of C (C + 1) / 2, rounded up to 16; then the right-hand sides [C][lanes]
-// Defines  CHANNELS, DIFF_T, TEXTURES, EXPRESSIONS, EXPRESSION_LANES, WEIGHT_SCALE  as in difference_fit.cl
+// Defines  CHANNELS, DIFF_T                         tiles.h
+//          TEXTURES, EXPRESSIONS, EXPRESSION_LANES  grid_weights.h
+//          WEIGHT_SCALE                             weight_grid.h
 // Sums     fixed order: rows, then lanes
+
+#include "grid_weights.h"
+#include "tiles.h"
+#include "weight_grid.h"
 
 #define DIFFS JOIN(DIFF_T, 16)
 #define CELLS CELLS_OF_16
@@ -43,7 +50,7 @@ static void add_blocks(const Rows* rows, const float16* hats, global const float
           product = FMA(textures[(i * CHANNELS + c) * TILE_SIDE + y], textures[(j * CHANNELS + c) * TILE_SIDE + y], product);
         }
         product *= texel_weights[y];
-        const int p = i * (i + 1) / 2 + j;
+        const int p = LOWER(i, j);
         same[r][p] += g * g * product;
         below[r][p] += g * f * product;
         if (r + 1 < CELLS) same[r + 1][p] += f * f * product;

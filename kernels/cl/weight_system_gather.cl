@@ -1,12 +1,20 @@
 // weight_system_gather.cl - adds up, for every cell of the weight grid, what the tiles of a band hold of its equations
 //   system[q] = keep * system[q] + metric_weight * sum over tiles of partial[tile][q]
+//
 // NDRange  global {ENTRIES / 16, columns, rows}, local any: one work-item per 16 numbers of a cell
 // Buffers  tile_at  in   [tile rows][tile columns] int   index of a tile of the band, -1 where there is none
 //          partial  in   as weight_system.cl writes it
 //          system   out  [row][column][ENTRIES] float    cell rows from first_cell_row on
-// Defines  ENTRIES       numbers of a cell, a multiple of 16
-//          WEIGHT_SCALE  texels per cell
+// Defines  ENTRIES       numbers of a cell, a multiple of 16 (96: four textures, 16 expressions or fewer)
+//          WEIGHT_SCALE  weight_grid.h
 // Sums     fixed order: tiles by row, then column
+
+#include "tiles.h"
+#include "weight_grid.h"
+
+#ifndef ENTRIES
+#define ENTRIES 96
+#endif
 
 kernel void weight_system_gather(global const int* restrict tile_at, global const float16* restrict partial,
                                  global float16* restrict system, const int tile_columns, const int tile_rows,

@@ -3,7 +3,7 @@
 
 #include "facezip/package.hpp"
 #include "fuzz_file.hpp"
-#include "host/sample_package.hpp"
+#include "../host/sample_package.hpp"
 
 namespace facezip::fuzz {
 

@@ -50,7 +50,7 @@ TEST(PermutationSearch, BestOfTheRestartsIsTheOptimumOfFiveMasks) {
   for (std::uint64_t seed = 0; seed < 24; ++seed) {
     SCOPED_TRACE(seed);
     const SeamTables tables = randomTables(5, seed < 4 ? 4 : 3, seed, /* reach= */ seed % 2 == 0 ? 4 : 2);
-    const PermutationSearch search = searchPermutation(tables, {.restarts = 100, .seed = seed});
+    const PermutationRestarts search = searchPermutation(tables, {.restarts = 100, .seed = seed});
     const double lowest = lowestCost(tables);
     EXPECT_NEAR(search.best.cost, lowest, test::kDoubleSum * lowest);
     EXPECT_NEAR(seamCost(tables, search.best.sigma), search.best.cost, test::kDoubleSum * lowest);
@@ -79,7 +79,7 @@ TEST(PermutationSearch, RestartsEscapeWhereOneDescentIsStuck) {
     tables.values.insert(tables.values.end(), table.begin(), table.end());
   EXPECT_EQ(identityPermutation(tables).cost, 2.0);
 
-  const PermutationSearch search = searchPermutation(tables, {.restarts = 40});
+  const PermutationRestarts search = searchPermutation(tables, {.restarts = 40});
   EXPECT_EQ(search.best.cost, 0.0);
   EXPECT_THAT(search.finalCosts(), testing::Contains(0.0));
   EXPECT_THAT(search.finalCosts(), testing::Contains(2.0));
@@ -87,7 +87,7 @@ TEST(PermutationSearch, RestartsEscapeWhereOneDescentIsStuck) {
 
 TEST(PermutationSearch, SweepsNeverRaiseTheCostAndSettle) {
   const SeamTables tables = randomTables(53, 4, 7, 9);
-  const PermutationSearch search = searchPermutation(tables, {.restarts = 20});
+  const PermutationRestarts search = searchPermutation(tables, {.restarts = 20});
   EXPECT_EQ(search.unconverged_restarts, 0);
   for (const auto& costs : search.sweep_costs) {
     ASSERT_GE(costs.size(), 3u);
@@ -101,7 +101,7 @@ TEST(PermutationSearch, SweepsNeverRaiseTheCostAndSettle) {
 
 TEST(PermutationSearch, CountsRestartsThatWereCutOff) {
   const SeamTables tables = randomTables(53, 4, 7, 9);
-  const PermutationSearch search = searchPermutation(tables, {.restarts = 6, .max_sweeps = 1});
+  const PermutationRestarts search = searchPermutation(tables, {.restarts = 6, .max_sweeps = 1});
   EXPECT_EQ(search.unconverged_restarts, 6);
   for (const auto& costs : search.sweep_costs) EXPECT_EQ(costs.size(), 2u);
 }
@@ -116,9 +116,9 @@ TEST(PermutationSearch, StartsAreRandomPermutationsOfEveryMask) {
 
 TEST(PermutationSearch, ResultDependsOnTheSeedAndNotOnThreads) {
   const SeamTables tables = randomTables(20, 4, 3, 5);
-  const PermutationSearch parallel = searchPermutation(tables, {.restarts = 30, .seed = 2});
+  const PermutationRestarts parallel = searchPermutation(tables, {.restarts = 30, .seed = 2});
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
-  const PermutationSearch serial = searchPermutation(tables, {.restarts = 30, .seed = 2});
+  const PermutationRestarts serial = searchPermutation(tables, {.restarts = 30, .seed = 2});
   EXPECT_EQ(serial.best.sigma, parallel.best.sigma);
   EXPECT_EQ(serial.sweep_costs, parallel.sweep_costs);
   EXPECT_NE(searchPermutation(tables, {.restarts = 30, .seed = 3}).sweep_costs, serial.sweep_costs);
@@ -137,7 +137,7 @@ TEST(PermutationSearch, MasksWithoutPairsAndASingleMaskCostNothing) {
 }
 
 TEST(PermutationSearch, MedianOfTheFinalCosts) {
-  PermutationSearch search;
+  PermutationRestarts search;
   search.sweep_costs = {{9, 5}, {8, 1}, {7, 4}};
   EXPECT_EQ(search.medianFinalCost(), 4.0);
   search.sweep_costs.push_back({6, 2});

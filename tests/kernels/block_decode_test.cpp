@@ -4,7 +4,7 @@
 #include <random>
 
 #include "blocks/device_block_decoder.hpp"
-#include "canary_buffer.hpp"
+#include "problems/guarded_buffer.hpp"
 #include "reference/block_formats.hpp"
 #include "test_device.hpp"
 #include "tolerances.hpp"
@@ -43,8 +43,8 @@ TEST(BlockDecode, IsTheReference) {
     const std::vector<std::uint8_t> blocks = anyBlocks(format, blockBytes(format, width, rows) / bytes);
     const cl::Buffer on_device = context.upload(blocks, "blocks");
     const auto samples = static_cast<std::size_t>(width * rows * channels);
-    test::CanaryBuffer floats(context, samples * sizeof(float));
-    test::CanaryBuffer whole(context, samples);
+    test::GuardedBuffer floats(context, samples * sizeof(float));
+    test::GuardedBuffer whole(context, samples);
     const TexelLayout layout = TexelLayout::interleaved(width, rows, channels);
     decodeOnDevice(context, format, channels, on_device, layout, DecodedType::kFloat, floats.buffer());
     decodeOnDevice(context, format, channels, on_device, layout, DecodedType::kUint8, whole.buffer());
@@ -74,7 +74,7 @@ TEST(BlockDecode, FewerChannelsAndTiles) {
   const cl::Buffer on_device = context.upload(blocks, "blocks");
   const std::vector<cl_int2> positions = {{{1, 0}}, {{0, 1}}, {{0, 0}}};
   const cl::Buffer tiles = context.upload(positions, "tiles");
-  test::CanaryBuffer texels(context, positions.size() * 2 * kTileTexels * sizeof(float));
+  test::GuardedBuffer texels(context, positions.size() * 2 * kTileTexels * sizeof(float));
   decodeOnDevice(context, BlockFormat::kBc7, 2, on_device,
                  TexelLayout::inTiles(width, rows, 2, tiles, positions.size(), 1, 0), DecodedType::kFloat,
                  texels.buffer());

@@ -8,8 +8,8 @@
 
 #include "block_picture.hpp"
 #include "blocks/bc_encoder.hpp"
-#include "canary_buffer.hpp"
 #include "facezip/error.hpp"
+#include "problems/guarded_buffer.hpp"
 #include "reference/block_formats.hpp"
 #include "reference/block_search.hpp"
 #include "test_device.hpp"
@@ -347,8 +347,8 @@ TEST(BlockEncode, TilesGiveTheSameBlocks) {
     texels.layout = TexelLayout::inTiles(width, rows, channels, tiles, positions.size(), textures, 1);
     texels.samples = context.upload(samples, "samples");
     texels.weights = context.upload(weights, "weights");
-    test::CanaryBuffer blocks(context, blockBytes(format, width, rows));
-    test::CanaryBuffer decoded(context, samples.size() * sizeof(float));
+    test::GuardedBuffer blocks(context, blockBytes(format, width, rows));
+    test::GuardedBuffer decoded(context, samples.size() * sizeof(float));
     encoder.fill(blocks.buffer(), width, rows, std::vector<float>{10.0f, 20.0f, 30.0f});
     encoder.encodeOnDevice(texels, blocks.buffer(), decoded.buffer());
     const std::vector<std::byte> got = blocks.read<std::byte>();
@@ -390,8 +390,8 @@ TEST(BlockEncode, PlanesGiveTheSameBlocks) {
   texels.layout = TexelLayout::planar(21, 10);
   texels.samples = context.upload(planes, "samples");
   BcEncoder encoder(context, usual(BlockFormat::kBc7, 3));
-  test::CanaryBuffer blocks(context, blockBytes(BlockFormat::kBc7, 21, 10));
-  test::CanaryBuffer decoded(context, planes.size() * sizeof(float));
+  test::GuardedBuffer blocks(context, blockBytes(BlockFormat::kBc7, 21, 10));
+  test::GuardedBuffer decoded(context, planes.size() * sizeof(float));
   encoder.encodeOnDevice(texels, blocks.buffer(), decoded.buffer());
   decoded.read<float>();
   EXPECT_EQ(blocks.read<std::byte>(), encode(usual(BlockFormat::kBc7, 3), picture).blocks);

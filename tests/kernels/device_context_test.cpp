@@ -14,7 +14,7 @@ TEST(DeviceContext, BuffersKeepWhatIsUploaded) {
   const std::vector<float> values = {1.0f, -2.0f, 0.5f};
   const cl::Buffer buffer = context.upload(values, "values");
   std::vector<float> back(values.size());
-  context.read(buffer, back.data(), back.size() * sizeof(float), "values");
+  context.read(buffer, back, "values");
   EXPECT_EQ(back, values);
 }
 

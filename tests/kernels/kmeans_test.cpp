@@ -1,4 +1,4 @@
-#include "compress/search/kmeans.hpp"
+#include "problems/kmeans.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,17 +7,18 @@
 #include <cmath>
 #include <set>
 
-#include "reference/kmeans.hpp"
-#include "search_capture.hpp"
 #include "test_device.hpp"
 #include "tolerances.hpp"
 
-namespace facezip::compress {
+namespace facezip::test {
 namespace {
 
-using test::randomCapture;
-using test::SearchCapture;
-using test::testDevice;
+using compress::clusterFragments;
+using compress::Clustering;
+using compress::kMaxClusters;
+using compress::KmeansOptions;
+using compress::KmeansRuns;
+using compress::runKmeans;
 
 std::vector<int> labelsOfRun(const KmeansRuns& runs, int mask, int restart) {
   const auto first =
@@ -38,13 +39,13 @@ struct Comparison {
 
 /// Every run beside the same run of the reference, which works on the fragments in double.
 Comparison compareRuns(const SearchCapture& capture, const KmeansOptions& options) {
-  const KmeansRuns runs = runKmeans(testDevice(), gramsOf(capture), options);
+  KmeansProblem problem(testDevice(), capture, options);
+  problem.run();
+  const KmeansRuns runs = problem.result();
   Comparison result;
   for (int k = 0; k < runs.masks; ++k) {
-    const reference::Points fragments = capture.fragments(static_cast<std::size_t>(k));
     for (int restart = 0; restart < options.restarts; ++restart, ++result.runs) {
-      const reference::KmeansRun expected =
-          reference::kmeans(fragments, options.clusters, options.max_iterations, options.seed, k, restart);
+      const reference::KmeansRun expected = problem.expected(k, restart);
       const bool same_end = (runs.iterations[static_cast<std::size_t>(result.runs)] >= 0) == expected.converged;
       if (labelsOfRun(runs, k, restart) != expected.labels || !same_end) ++result.diverged;
       result.refills += expected.refills;
@@ -54,10 +55,10 @@ Comparison compareRuns(const SearchCapture& capture, const KmeansOptions& option
 }
 
 TEST(Kmeans, EveryRunIsTheReferencesOnAwkwardSizes) {
-  const std::vector<int> masks = test::smallSizesOnly() ? std::vector{1, 2} : std::vector{1, 2, 53};
-  const std::vector<int> restarts = test::smallSizesOnly() ? std::vector{1, 7} : std::vector{1, 7, 64};
+  const std::vector<int> masks = smallSizesOnly() ? std::vector{1, 2} : std::vector{1, 2, 53};
+  const std::vector<int> restarts = smallSizesOnly() ? std::vector{1, 7} : std::vector{1, 7, 64};
   Comparison total;
-  for (const int expressions : {1, 2, 3, 4, 5, 16, 20, 37}) {
+  for (const int expressions : {1, 2, 3, 4, 5, 16, 20, 37}) {  // three programs: blocks of 16 fragments
     for (const int mask_count : masks) {
       for (const int restart_count : restarts) {
         const Comparison one =
@@ -68,21 +69,21 @@ TEST(Kmeans, EveryRunIsTheReferencesOnAwkwardSizes) {
       }
     }
   }
-  EXPECT_LE(total.diverged, test::kDivergedRuns * total.runs) << "of " << total.runs << " runs";
+  EXPECT_LE(total.diverged, kDivergedRuns * total.runs) << "of " << total.runs << " runs";
 }
 
 TEST(Kmeans, EveryRunIsTheReferencesForOtherClusterCounts) {
   for (const int clusters : {1, 3, kMaxClusters}) {
     SCOPED_TRACE(clusters);
     const Comparison one = compareRuns(randomCapture(19, 3, 3), {.clusters = clusters, .restarts = 16, .seed = 9});
-    EXPECT_LE(one.diverged, test::kDivergedRuns * one.runs);
+    EXPECT_LE(one.diverged, kDivergedRuns * one.runs);
   }
 }
 
 // Few fragments in a plane: about one run in a thousand has a cluster run empty, which is refilled as documented.
 TEST(Kmeans, RefillsEmptyClustersLikeTheReference) {
-  if (test::smallSizesOnly()) GTEST_SKIP() << "needs thousands of runs to see a refill";
-  const SearchCapture capture = randomCapture(8, 53, 26, test::Masks::kHard, /* texels_per_mask= */ 2);
+  if (smallSizesOnly()) GTEST_SKIP() << "needs thousands of runs to see a refill";
+  const SearchCapture capture = randomCapture(8, 53, 26, Masks::kHard, /* texels_per_mask= */ 2);
   int refills = 0;
   for (const int iterations : {1, 2, 100}) {  // also cut short, before further iterations hide which fragment was taken
     const Comparison all =
@@ -108,12 +109,12 @@ double lowestFromAllSeeds(const reference::Points& fragments) {
 }
 
 TEST(Kmeans, FindsTheBestThatAnySeedsLeadTo) {
-  for (std::uint64_t seed = 0; seed < (test::smallSizesOnly() ? 2u : 12u); ++seed) {
+  for (std::uint64_t seed = 0; seed < (smallSizesOnly() ? 2u : 12u); ++seed) {
     const SearchCapture capture = randomCapture(7, 2, seed);
     const Clustering clustering = clusterFragments(testDevice(), gramsOf(capture), {.clusters = 3, .restarts = 256});
     for (std::size_t k = 0; k < 2; ++k) {
       const double lowest = lowestFromAllSeeds(capture.fragments(k));
-      EXPECT_NEAR(clustering.inertia[k], lowest, test::kDoubleSum * lowest);
+      EXPECT_NEAR(clustering.inertia[k], lowest, kDoubleSum * lowest);
     }
   }
 }
@@ -127,13 +128,12 @@ TEST(Kmeans, WinnersAreFixedPointsAndTheirInertiaIsRight) {
     const reference::Points fragments = capture.fragments(mask);
     const std::vector<int> labels = labelsOfMask(clustering, k);
     EXPECT_NEAR(clustering.inertia[mask], reference::inertia(fragments, labels, 4),
-                test::kDoubleSum * clustering.inertia[mask]);
+                kDoubleSum * clustering.inertia[mask]);
     const reference::Points centres = reference::meansOf(fragments, labels, 4);
     for (std::size_t n = 0; n < fragments.size(); ++n) {
       const double own = reference::squaredDistance(fragments[n], centres[static_cast<std::size_t>(labels[n])]);
       for (const auto& centre : centres) {
-        EXPECT_LE(own,
-                  reference::squaredDistance(fragments[n], centre) + test::kCentreDistance * clustering.inertia[mask]);
+        EXPECT_LE(own, reference::squaredDistance(fragments[n], centre) + kCentreDistance * clustering.inertia[mask]);
       }
     }
   }
@@ -146,7 +146,7 @@ SearchCapture repeatedCapture(int expressions, int distinct, int masks) {
   std::mt19937_64 random(5);
   for (int n = distinct; n < expressions; ++n) {
     capture.differences.push_back(capture.differences[static_cast<std::size_t>(n % distinct)]);
-    for (double& value : capture.differences.back()) value += (distinct > 1 ? 1e-3 : 0.0) * test::uniform(random);
+    for (double& value : capture.differences.back()) value += (distinct > 1 ? 1e-3 : 0.0) * uniform(random);
   }
   return capture;
 }
@@ -154,7 +154,7 @@ SearchCapture repeatedCapture(int expressions, int distinct, int masks) {
 TEST(Kmeans, CoincidentFragmentsShareAClusterAndLeaveTheRestEmpty) {
   for (const int expressions : {1, 2, 3, 4, 20, 37, 128}) {
     for (const int distinct : {1, 2, 3, 4}) {
-      if (distinct > expressions || (test::smallSizesOnly() && expressions > 37)) continue;
+      if (distinct > expressions || (smallSizesOnly() && expressions > 37)) continue;
       SCOPED_TRACE(testing::Message() << expressions << " expressions, " << distinct << " distinct");
       const SearchCapture capture = repeatedCapture(expressions, distinct, 2);
       const KmeansRuns runs = runKmeans(testDevice(), gramsOf(capture), {.restarts = 7});
@@ -229,7 +229,7 @@ TEST(Kmeans, EqualPartitionsTieToTheLowestRestart) {
                         .expressions = 5,
                         .labels = {0, 0, 0, 0, 0, /**/ 2, 0, 1, 3, 3, /**/ 0, 1, 2, 3, 3},
                         .iterations = {1, -1, 1}};
-  const Clustering clustering = selectBestRuns(gramsOf(capture), runs, 4);
+  const Clustering clustering = compress::selectBestRuns(gramsOf(capture), runs, 4);
   EXPECT_EQ(clustering.labels, (std::vector{2, 0, 1, 3, 3}));
   EXPECT_FALSE(clustering.converged);
 }
@@ -241,29 +241,6 @@ TEST(Kmeans, IsDeterministicAndTheSeedMatters) {
   EXPECT_NE(runKmeans(testDevice(), grams, {.restarts = 7, .seed = 4}).labels, once.labels);
 }
 
-TEST(Kmeans, WritesNothingBeyondItsOutputs) {
-  const auto grams = gramsOf(randomCapture(5, 3, 1));
-  constexpr std::size_t kCanary = 64;
-  const std::size_t label_bytes = 3 * 7 * 5, iteration_bytes = 3 * 7 * sizeof(cl_int);
-  const std::vector<std::uint8_t> canary(kCanary + iteration_bytes + label_bytes, 0xA5);
-  device::DeviceContext& context = testDevice();
-  KmeansLaunch launch{.masks = 3,
-                      .expressions = 5,
-                      .options = {.restarts = 7},
-                      .gram = context.upload(packKmeansGrams(grams), "gram"),
-                      .labels = context.allocate(canary.size(), CL_MEM_READ_WRITE, "labels"),
-                      .iterations = context.allocate(canary.size(), CL_MEM_READ_WRITE, "iterations")};
-  context.write(launch.labels, canary.data(), canary.size(), "labels");
-  context.write(launch.iterations, canary.data(), canary.size(), "iterations");
-  launchKmeans(context, launch);
-  std::vector<std::uint8_t> labels(canary.size()), iterations(canary.size());
-  context.read(launch.labels, labels.data(), labels.size(), "labels");
-  context.read(launch.iterations, iterations.data(), iterations.size(), "iterations");
-  for (std::size_t i = label_bytes; i < labels.size(); ++i) ASSERT_EQ(labels[i], 0xA5) << i;
-  for (std::size_t i = iteration_bytes; i < iterations.size(); ++i) ASSERT_EQ(iterations[i], 0xA5) << i;
-  for (std::size_t i = 0; i < label_bytes; ++i) ASSERT_LT(labels[i], 4) << i;
-}
-
 TEST(Kmeans, RefusesOptionsOutOfRange) {
   const auto grams = gramsOf(randomCapture(5, 1, 1));
   EXPECT_THROW(clusterFragments(testDevice(), grams, {.clusters = 0}), InputError);
@@ -273,4 +250,4 @@ TEST(Kmeans, RefusesOptionsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace facezip::compress
+}  // namespace facezip::test

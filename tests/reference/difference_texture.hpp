@@ -1,8 +1,6 @@
-// Reference for kernels/cl/difference_texture*.cl: Eq. 5 of FaceZip and the integer encoding, texel by texel in double.
+// Reference for kernels/cl/difference_texture.cl: Eq. 5 of FaceZip, texel by texel in double.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -36,11 +34,6 @@ inline std::vector<double> differenceTexture(const std::vector<std::pair<int, st
     }
   }
   return result;
-}
-
-/// Where `value` lies on the scale of codes, 0 to `largest`, before rounding.
-inline double codePosition(double value, double scale, double offset, double largest) {
-  return scale > 0.0 ? std::clamp((value - offset) / scale, 0.0, largest) : 0.0;
 }
 
 }  // namespace facezip::reference

@@ -25,8 +25,8 @@ class ProtectedPaths {
   ProtectedPaths& add(const ProtectedPaths& others);
 
   /// Throws OutputError where `output`, a file or a folder that files are added to, there or not, is one of these or
-  /// lies in one. Devices and pipes pass: they are written to, not replaced. An empty name passes. option  that names
-  /// another place, for the message
+  /// lies in one. Devices and pipes pass: they are written to, not replaced. An empty name passes.
+  /// option  that names another place, for the message
   void requireApart(const std::filesystem::path& output, const std::string& option = "--output") const;
 
   /// The same for a folder that is replaced: none of these may lie in it, either.

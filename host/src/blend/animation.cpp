@@ -9,6 +9,7 @@
 #include "blend/names.hpp"
 #include "blend/number.hpp"
 #include "facezip/blend.hpp"
+#include "io/counts.hpp"
 #include "io/read_file.hpp"
 #include "package/package_json.hpp"
 
@@ -73,7 +74,7 @@ void appendFrame(const std::string& line, std::size_t line_number, const std::fi
                       fmt::format("{}", fields.size()), ""});
   }
   const std::size_t frame = clip.weights.size();
-  clip.weights.resize(frame + static_cast<std::size_t>(clip.expressions), 0.0f);
+  clip.weights.resize(frame + toSize(clip.expressions), 0.0f);
   for (std::size_t column = 0; column < fields.size(); ++column) {
     if (columns[column] == kSkippedColumn) continue;
     const std::optional<float> weight = blend::parseNumber(fields[column]);
@@ -82,7 +83,7 @@ void appendFrame(const std::string& line, std::size_t line_number, const std::fi
                         fmt::format("a number of at most {:g} either way", kLargestWeight),
                         package::quoted(fields[column]), ""});
     }
-    clip.weights[frame + static_cast<std::size_t>(columns[column])] = *weight;
+    clip.weights[frame + toSize(columns[column])] = *weight;
   }
 }
 

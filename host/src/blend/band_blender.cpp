@@ -6,6 +6,7 @@
 
 #include "blend/blend.hpp"
 #include "blend/map_textures.hpp"
+#include "io/counts.hpp"
 
 namespace facezip::blend {
 
@@ -25,16 +26,17 @@ struct BandBlender::State {
   const cl::Buffer& blendWeights(std::span<const float> beta) {
     assert(textures);
     requireWeights(beta, expressions);
-    const auto [first, last] = cellRowsOf(textures->begin(), textures->end(), shape.weight_scale, weights->grid().rows);
-    weights->blend(beta, first, last);
+    const raster::CellRows rows =
+        raster::cellRowsOf(textures->begin(), textures->end(), shape.weight_scale, weights->grid().rows);
+    weights->blend(beta, rows.begin, rows.end);
     return weights->weights();
   }
 };
 
 BandBlender::BandBlender(const Package& package, int map_index, const WeightSets& weights, const Device& device) {
-  const PackageMap& map = package.maps()[static_cast<std::size_t>(map_index)];
-  state_ = std::make_unique<State>(State{device.context(), weights[static_cast<std::size_t>(map.weight_set)],
-                                         package.expressions(), map.height, textureShape(map, package.differences()),
+  const PackageMap& map = package.maps()[toSize(map_index)];
+  state_ = std::make_unique<State>(State{device.context(), weights[toSize(map.weight_set)], package.expressions(),
+                                         map.height, textureShape(map, package.differences()),
                                          MapReader(package, map_index), std::nullopt, 0});
 }
 
@@ -42,12 +44,12 @@ BandBlender::~BandBlender() = default;
 
 int BandBlender::rowsWithin(std::size_t bytes) const {
   // Tiles on the device and a frame of padded rows; what is read at once is small beside them.
-  const std::size_t padded = static_cast<std::size_t>(state_->shape.tilesAcross()) * kTileWidth;
-  const std::size_t tile_row_bytes = state_->shape.tilesBytes() + kTileRows * 2 * padded * state_->shape.rowBytes() /
-                                                                      static_cast<std::size_t>(state_->shape.width);
+  const std::size_t padded = toSize(state_->shape.tilesAcross()) * kTileWidth;
+  const std::size_t tile_row_bytes =
+      state_->shape.tilesBytes() + kTileRows * 2 * padded * state_->shape.rowBytes() / toSize(state_->shape.width);
   const std::size_t largest = state_->context.info().largest_allocation_bytes / state_->shape.tilesBytes();
   const std::size_t tile_rows = std::clamp<std::size_t>(bytes / tile_row_bytes, 1, std::max<std::size_t>(1, largest));
-  const std::size_t needed = static_cast<std::size_t>((state_->height + kTileRows - 1) / kTileRows);
+  const std::size_t needed = toSize(divideUp(state_->height, kTileRows));
   return static_cast<int>(std::min(tile_rows, needed)) * kTileRows;
 }
 
@@ -55,7 +57,7 @@ void BandBlender::loadRows(int begin, int end) {
   assert(begin % kTileRows == 0 && (end % kTileRows == 0 || end == state_->height) && end <= state_->height);
   if (!state_->textures || end - begin > state_->most_rows) {
     state_->textures.reset();  // before the larger one is made
-    const WeightGrid& grid = state_->weights->grid();
+    const WeightCodes& grid = state_->weights->grid();
     state_->textures.emplace(state_->context, state_->shape, end - begin, grid.columns, grid.rows);
     state_->most_rows = end - begin;
   }

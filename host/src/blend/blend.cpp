@@ -11,20 +11,18 @@
 namespace facezip::blend {
 namespace {
 
-std::size_t size(int value) { return static_cast<std::size_t>(value); }
-
 /// Where 16 texels of one plane lie in a tile's row: in samples or codes from `begin`, texel x of quad x / 4.
 struct Plane {
   std::size_t begin;
   std::size_t quad_stride;  // 4: one texel behind the other
 };
 
-Plane neutralPlane(int channel) { return {size(channel) * kTileWidth, 4}; }
+Plane neutralPlane(int channel) { return {toSize(channel) * kTileWidth, 4}; }
 
 /// As kernels/cl/blend.cl describes it.
 Plane codePlane(const TextureShape& shape, int quad_planes, int channel, int difference) {
-  const std::size_t plane = size(channel) * size(shape.differences) + size(difference);
-  if (plane >= size(quad_planes)) return {plane * kTileWidth, 4};
+  const std::size_t plane = toSize(channel, shape.differences) + toSize(difference);
+  if (plane >= toSize(quad_planes)) return {plane * kTileWidth, 4};
   return {plane / 4 * 4 * kTileWidth + plane % 4 * 4, 16};
 }
 
@@ -33,10 +31,10 @@ Plane codePlane(const TextureShape& shape, int quad_planes, int channel, int dif
 template <typename Sample>
 void splitRow(const std::byte* row, const TextureShape& shape, int channel, Plane plane, std::byte* to) {
   const std::size_t tile_bytes = shape.tileBytes();
-  const std::size_t texel_bytes = size(shape.channels) * sizeof(Sample);
-  row += size(channel) * sizeof(Sample);
-  for (std::size_t x0 = 0; x0 < size(shape.width); x0 += kTileWidth) {
-    const std::size_t count = std::min<std::size_t>(kTileWidth, size(shape.width) - x0);
+  const std::size_t texel_bytes = toSize(shape.channels) * sizeof(Sample);
+  row += toSize(channel) * sizeof(Sample);
+  for (std::size_t x0 = 0; x0 < toSize(shape.width); x0 += kTileWidth) {
+    const std::size_t count = std::min<std::size_t>(kTileWidth, toSize(shape.width) - x0);
     for (std::size_t x = 0; x < count; ++x) {
       const std::size_t in_plane = plane.begin + x / 4 * plane.quad_stride + x % 4;
       std::memcpy(to + in_plane * sizeof(Sample), row + (x0 + x) * texel_bytes, sizeof(Sample));
@@ -60,12 +58,12 @@ void splitRowOf(std::size_t bytes, const TextureShape& shape, const std::byte* r
 
 /// The kernel's third row of `encoding` takes back the bias that codes in quads come with.
 std::vector<float> encodingOf(const TextureShape& shape, int quad_planes) {
-  constexpr double kCodeBias = 32768.0;  // CODE_BIAS of kernels/cl/blend.cl
+  constexpr double kCodeBias{FACEZIP_CODE_BIAS};
   std::vector<float> encoding = shape.scale;
   encoding.insert(encoding.end(), shape.zero.begin(), shape.zero.end());
   for (int i = 0; i < shape.differences; ++i) {
     for (int c = 0; c < shape.channels; ++c) {
-      const std::size_t plane = size(i * shape.channels + c);
+      const std::size_t plane = toSize(i * shape.channels + c);
       const bool biased = c * shape.differences + i < quad_planes;
       encoding.push_back(
           static_cast<float>(-double{shape.scale[plane]} * (double{shape.zero[plane]} + (biased ? kCodeBias : 0.0))));
@@ -82,19 +80,13 @@ std::string definesOf(const TextureShape& shape, int quad_planes, bool gpu, bool
       shape.difference_bits, quad_planes, form == FrameForm::kValues ? 1 : 0, clang_builtins ? 1 : 0);
 }
 
-int floorDivide(int numerator, int denominator) {
-  return numerator >= 0 ? numerator / denominator : -((denominator - 1 - numerator) / denominator);
-}
-
 }  // namespace
 
 std::size_t TextureShape::neutralTileRowBytes() const {
-  return size(channels) * image::sampleBytes(sample_type) * kTileWidth;
+  return toSize(channels) * image::sampleBytes(sample_type) * kTileWidth;
 }
 
-std::size_t TextureShape::codeTileRowBytes() const {
-  return size(channels) * size(differences) * codeBytes() * kTileWidth;
-}
+std::size_t TextureShape::codeTileRowBytes() const { return toSize(channels, differences) * codeBytes() * kTileWidth; }
 
 TextureRows::TextureRows(device::DeviceContext& context, TextureShape shape, int most_rows, int cell_columns,
                          int cell_rows, device::KernelVariant variant)
@@ -102,8 +94,8 @@ TextureRows::TextureRows(device::DeviceContext& context, TextureShape shape, int
       shape_(std::move(shape)),
       cell_columns_(cell_columns),
       cell_rows_(cell_rows),
-      most_rows_(device::roundUp(size(most_rows), kTileRows)) {
-  assert(shape_.scale.size() == size(shape_.differences) * size(shape_.channels));
+      most_rows_(roundUp(toSize(most_rows), kTileRows)) {
+  assert(shape_.scale.size() == toSize(shape_.differences, shape_.channels));
   assert(shape_.zero.size() == shape_.scale.size());
   gpu_ = context.resolve(variant) == device::KernelVariant::kGpu;
   clang_builtins_ = context.clangBuiltins(variant);
@@ -127,14 +119,12 @@ TextureRows::Output& TextureRows::output(FrameForm form) {
   if (output.kernel() == nullptr) {
     output.kernel = context_.kernel("blend.cl", "blend", definesOf(shape_, quadPlanes(), gpu_, clang_builtins_, form));
     output.local_size = context_.workGroupSize(output.kernel, gpu_ ? 64 : 16);
-    output.kernel.setArg(0, textures_);
-    output.kernel.setArg(2, encoding_);
   }
   return output;
 }
 
 void TextureRows::setRows(int begin, int end) {
-  assert(begin % kTileRows == 0 && begin < end && size(end - begin) <= most_rows_);
+  assert(begin % kTileRows == 0 && begin < end && toSize(end - begin) <= most_rows_);
   begin_ = begin;
   end_ = end;
 }
@@ -142,27 +132,27 @@ void TextureRows::setRows(int begin, int end) {
 void TextureRows::load(int first, int rows, std::span<const std::byte> neutral,
                        std::span<const std::span<const std::byte>> differences) {
   assert(first % kTileRows == 0 && begin_ <= first && first + rows <= end_);
-  assert(neutral.size() == size(rows) * shape_.rowBytes() && differences.size() == size(shape_.differences));
+  assert(neutral.size() == toSize(rows) * shape_.rowBytes() && differences.size() == toSize(shape_.differences));
   const int tile_rows = (rows + kTileRows - 1) / kTileRows;
   const std::size_t sample_bytes = image::sampleBytes(shape_.sample_type);
   const std::size_t code_bytes = shape_.codeBytes();
-  tiles_.resize(size(tile_rows) * shape_.tilesBytes());
+  tiles_.resize(toSize(tile_rows) * shape_.tilesBytes());
   tbb::parallel_for(0, rows, [&](int row) {
-    std::byte* tiles = tiles_.data() + size(row / kTileRows) * shape_.tilesBytes();
-    std::byte* samples = tiles + size(row % kTileRows) * shape_.neutralTileRowBytes();
+    std::byte* tiles = tiles_.data() + toSize(row / kTileRows) * shape_.tilesBytes();
+    std::byte* samples = tiles + toSize(row % kTileRows) * shape_.neutralTileRowBytes();
     std::byte* codes =
-        tiles + kTileRows * shape_.neutralTileRowBytes() + size(row % kTileRows) * shape_.codeTileRowBytes();
-    const std::byte* neutral_row = neutral.data() + size(row) * shape_.rowBytes();
+        tiles + kTileRows * shape_.neutralTileRowBytes() + toSize(row % kTileRows) * shape_.codeTileRowBytes();
+    const std::byte* neutral_row = neutral.data() + toSize(row) * shape_.rowBytes();
     for (int c = 0; c < shape_.channels; ++c) {
       splitRowOf(sample_bytes, shape_, neutral_row, c, neutralPlane(c), samples);
       for (int i = 0; i < shape_.differences; ++i) {
-        const std::byte* code_row = differences[size(i)].data() + size(row) * shape_.differenceRowBytes();
+        const std::byte* code_row = differences[toSize(i)].data() + toSize(row) * shape_.differenceRowBytes();
         splitRowOf(code_bytes, shape_, code_row, c, codePlane(shape_, quadPlanes(), c, i), codes);
       }
     }
   });
-  context_.write(textures_, tiles_.data(), tiles_.size(), "the textures of a map",
-                 size((first - begin_) / kTileRows) * shape_.tilesBytes());
+  context_.write(textures_, tiles_, "the textures of a map",
+                 toSize((first - begin_) / kTileRows) * shape_.tilesBytes());
 }
 
 std::size_t TextureRows::frameSampleBytes(FrameForm form) const {
@@ -170,21 +160,16 @@ std::size_t TextureRows::frameSampleBytes(FrameForm form) const {
 }
 
 std::size_t TextureRows::paddedRowBytes(FrameForm form) const {
-  return size(shape_.tilesAcross()) * kTileWidth * size(shape_.channels) * frameSampleBytes(form);
+  return toSize(shape_.tilesAcross()) * kTileWidth * toSize(shape_.channels) * frameSampleBytes(form);
 }
 
 cl::Event TextureRows::enqueue(const cl::Buffer& weights, const cl::Buffer& frame, FrameForm form) {
   auto& [kernel, local_size, unused] = output(form);
-  const std::size_t tiles = size(tileRowCount()) * size(shape_.tilesAcross());
+  const std::size_t tiles = toSize(tileRowCount()) * toSize(shape_.tilesAcross());
   const std::size_t items = tiles * (gpu_ ? kTileWidth : 1);
-  kernel.setArg(1, weights);
-  kernel.setArg(3, frame);
-  kernel.setArg(4, static_cast<cl_int>(shape_.tilesAcross()));
-  kernel.setArg(5, static_cast<cl_ulong>(tiles));
-  kernel.setArg(6, static_cast<cl_int>(begin_ / kTileRows));
-  kernel.setArg(7, static_cast<cl_int>(cell_columns_));
-  kernel.setArg(8, static_cast<cl_int>(cell_rows_));
-  return context_.run(kernel, cl::NDRange(device::roundUp(items, local_size)), cl::NDRange(local_size));
+  return context_.launch(kernel, device::WorkItems(roundUp(items, local_size)).inGroupsOf(local_size), textures_,
+                         weights, encoding_, frame, shape_.tilesAcross(), tiles, begin_ / kTileRows, cell_columns_,
+                         cell_rows_);
 }
 
 /// True when the kernel may write into the caller's memory: no padding in the frame, vector stores aligned, and a
@@ -206,8 +191,8 @@ void TextureRows::blendValues(const cl::Buffer& weights, std::span<float> out) {
 }
 
 void TextureRows::blendInto(const cl::Buffer& weights, std::span<std::byte> out, FrameForm form) {
-  const std::size_t row_bytes = size(shape_.width) * size(shape_.channels) * frameSampleBytes(form);
-  assert(out.size() == size(end_ - begin_) * row_bytes);
+  const std::size_t row_bytes = toSize(shape_.width, shape_.channels) * frameSampleBytes(form);
+  assert(out.size() == toSize(end_ - begin_) * row_bytes);
   try {
     if (fitsFrame(out, form)) {
       const cl::Buffer frame(context_.context(), CL_MEM_WRITE_ONLY | CL_MEM_USE_HOST_PTR, out.size(), out.data());
@@ -224,7 +209,7 @@ void TextureRows::blendInto(const cl::Buffer& weights, std::span<std::byte> out,
     enqueue(weights, frame, form);
     const void* mapped = context_.queue().enqueueMapBuffer(frame, CL_TRUE, CL_MAP_READ, 0, frameBytes(form));
     for (int row = 0; row < end_ - begin_; ++row) {
-      std::memcpy(out.data() + size(row) * row_bytes, static_cast<const std::byte*>(mapped) + size(row) * padded,
+      std::memcpy(out.data() + toSize(row) * row_bytes, static_cast<const std::byte*>(mapped) + toSize(row) * padded,
                   row_bytes);
     }
     context_.queue().enqueueUnmapMemObject(frame, const_cast<void*>(mapped));
@@ -232,11 +217,6 @@ void TextureRows::blendInto(const cl::Buffer& weights, std::span<std::byte> out,
   } catch (const cl::Error& error) {
     throw device::toDeviceError(error, "reading a frame", context_.info());
   }
-}
-
-std::pair<int, int> cellRowsOf(int begin, int end, int weight_scale, int cell_rows) {
-  const auto above = [weight_scale](int row) { return floorDivide(2 * row + 1 - weight_scale, 2 * weight_scale); };
-  return {std::clamp(above(begin), 0, cell_rows - 1), std::clamp(above(end - 1) + 2, 1, cell_rows)};
 }
 
 }  // namespace facezip::blend

@@ -6,13 +6,15 @@
 #include <vector>
 
 #include "blend/weight_blend.hpp"
+#include "cl/layout.h"
 #include "device/device_context.hpp"
 #include "image/image_file.hpp"
+#include "io/counts.hpp"
 
 namespace facezip::blend {
 
-inline constexpr int kTileWidth = 16;  ///< texels, kernels/cl/blend.cl
-inline constexpr int kTileRows = 8;    ///< texels
+inline constexpr int kTileWidth = FACEZIP_TILE_SIDE;       ///< texels, kernels/cl/blend.cl
+inline constexpr int kTileRows = FACEZIP_BLEND_TILE_ROWS;  ///< texels
 
 /// What the kernel writes: samples of the neutral's type, or float32 in 1/255 of full scale, before rounding.
 enum class FrameForm { kSamples, kValues };
@@ -29,19 +31,17 @@ struct TextureShape {
       scale;  ///< [C][channels], steps of a sample (8-bit 1, 16-bit 1/257 and float 255 in 1/255) per code
   std::vector<float> zero;  ///< [C][channels], the code that means 0
 
-  int tilesAcross() const { return (width + kTileWidth - 1) / kTileWidth; }
+  int tilesAcross() const { return divideUp(width, kTileWidth); }
   std::size_t rowBytes() const { return frameShape(1).rowBytes(); }  ///< of neutral and frame
   std::size_t codeBytes() const { return difference_bits == 16 ? 2 : 1; }
-  std::size_t differenceRowBytes() const {
-    return static_cast<std::size_t>(width) * static_cast<std::size_t>(channels) * codeBytes();
-  }
+  std::size_t differenceRowBytes() const { return toSize(width, channels) * codeBytes(); }
   /// One texel row of one tile: 16 texels of the neutral, and of all differences. A tile has the rows of the one, then
   /// those of the other.
   std::size_t neutralTileRowBytes() const;
   std::size_t codeTileRowBytes() const;
   std::size_t tileBytes() const { return kTileRows * (neutralTileRowBytes() + codeTileRowBytes()); }
   /// A row of tiles.
-  std::size_t tilesBytes() const { return static_cast<std::size_t>(tilesAcross()) * tileBytes(); }
+  std::size_t tilesBytes() const { return toSize(tilesAcross()) * tileBytes(); }
   image::ImageShape frameShape(int rows) const { return {width, rows, channels, sample_type}; }
 };
 
@@ -76,7 +76,7 @@ class TextureRows {
   /// Runs the kernel into `frame`, frameBytes() bytes whose rows are padded to whole tiles; for blend() and benchmarks.
   cl::Event enqueue(const cl::Buffer& weights, const cl::Buffer& frame, FrameForm form = FrameForm::kSamples);
   std::size_t frameBytes(FrameForm form = FrameForm::kSamples) const {
-    return static_cast<std::size_t>(tileRowCount()) * kTileRows * paddedRowBytes(form);
+    return toSize(tileRowCount()) * kTileRows * paddedRowBytes(form);
   }
   std::size_t paddedRowBytes(FrameForm form = FrameForm::kSamples) const;
 
@@ -111,8 +111,5 @@ class TextureRows {
   std::size_t most_rows_;
   std::vector<std::byte> tiles_;  // staging of load()
 };
-
-/// Cell rows [first, second) that texel rows [begin, end) interpolate between.
-std::pair<int, int> cellRowsOf(int begin, int end, int weight_scale, int cell_rows);
 
 }  // namespace facezip::blend

@@ -7,24 +7,25 @@
 #include "blend/map_textures.hpp"
 #include "blend/weight_blend.hpp"
 #include "facezip/blend.hpp"
+#include "io/counts.hpp"
 
 namespace facezip {
 namespace {
 
 /// Rows whose tiles and whose frame fit into one buffer each of the device.
 int rowsInOneBuffer(const blend::TextureShape& shape, int height, const DeviceInfo& device) {
-  const std::size_t padded_row = static_cast<std::size_t>(shape.tilesAcross()) * blend::kTileWidth *
-                                 static_cast<std::size_t>(shape.channels) * image::sampleBytes(shape.sample_type);
+  const std::size_t padded_row =
+      toSize(shape.tilesAcross()) * blend::kTileWidth * toSize(shape.channels) * image::sampleBytes(shape.sample_type);
   const std::size_t largest = std::max(shape.tilesBytes(), padded_row * blend::kTileRows);
   const std::size_t tile_rows = std::max<std::size_t>(1, device.largest_allocation_bytes / largest);
-  const std::size_t needed = static_cast<std::size_t>((height + blend::kTileRows - 1) / blend::kTileRows);
+  const std::size_t needed = toSize(divideUp(height, blend::kTileRows));
   return static_cast<int>(std::min(tile_rows, needed)) * blend::kTileRows;
 }
 
 /// All rows of one map, in as few pieces as the device's largest buffer allows.
-std::deque<blend::TextureRows> loadMap(const Package& package, int map_index, const blend::WeightGrid& grid,
+std::deque<blend::TextureRows> loadMap(const Package& package, int map_index, const blend::WeightCodes& grid,
                                        device::DeviceContext& context) {
-  const PackageMap& map = package.maps()[static_cast<std::size_t>(map_index)];
+  const PackageMap& map = package.maps()[toSize(map_index)];
   const blend::TextureShape shape = blend::textureShape(map, package.differences());
   const int most_rows = rowsInOneBuffer(shape, map.height, context.info());
   blend::MapReader reader(package, map_index);
@@ -49,7 +50,7 @@ struct Blender::State {
   std::vector<float> gains;                                 // N, of expressions
   std::vector<float> tuned;                                 // N: frames allocate nothing
 
-  blend::WeightMaps& weightsOf(std::size_t map) { return *weights[static_cast<std::size_t>(maps[map].weight_set)]; }
+  blend::WeightMaps& weightsOf(std::size_t map) { return *weights[toSize(maps[map].weight_set)]; }
 };
 
 Blender::Blender(const Package& package, const Device& device)
@@ -61,7 +62,7 @@ Blender::Blender(const Package& package, const Device& device)
                                            {},
                                            {}})) {
   for (std::size_t m = 0; m < state_->maps.size(); ++m) {
-    const blend::WeightGrid& grid = state_->weightsOf(m).grid();
+    const blend::WeightCodes& grid = state_->weightsOf(m).grid();
     state_->textures.push_back(loadMap(package, static_cast<int>(m), grid, device.context()));
   }
   state_->gains.assign(state_->expressions.size(), 1.0f);
@@ -82,7 +83,7 @@ void Blender::setWeights(std::span<const float> beta) {
 void Blender::setGain(const Gain& gain) {
   bool fits = gain.expressions.size() == state_->expressions.size() && gain.cells.size() == state_->weights.size();
   for (std::size_t set = 0; fits && set < gain.cells.size(); ++set) {
-    fits = gain.cells[set].empty() || gain.cells[set].size() == state_->weights[set]->grid().cells();
+    fits = gain.cells[set].empty() || gain.cells[set].size() == state_->weights[set]->grid().cellCount();
   }
   if (!fits) throw InputError({"", "gain", "one that was made for this package", "one of another shape", ""});
   state_->gains = gain.expressions;
@@ -94,16 +95,15 @@ void Blender::blend(int map_index, std::span<std::byte> out) {
     throw InputError(
         {"", "map index", fmt::format("0 to {}", state_->maps.size() - 1), fmt::format("{}", map_index), ""});
   }
-  const PackageMap& map = state_->maps[static_cast<std::size_t>(map_index)];
+  const PackageMap& map = state_->maps[toSize(map_index)];
   if (out.size() != map.frameBytes()) {
     throw InputError({"", fmt::format("memory for a frame of {}", map.name), fmt::format("{} bytes", map.frameBytes()),
                       fmt::format("{} bytes", out.size()), ""});
   }
-  for (blend::TextureRows& rows : state_->textures[static_cast<std::size_t>(map_index)]) {
+  for (blend::TextureRows& rows : state_->textures[toSize(map_index)]) {
     const std::size_t row_bytes = rows.shape().rowBytes();
-    rows.blend(state_->weightsOf(static_cast<std::size_t>(map_index)).weights(),
-               out.subspan(static_cast<std::size_t>(rows.begin()) * row_bytes,
-                           static_cast<std::size_t>(rows.end() - rows.begin()) * row_bytes));
+    rows.blend(state_->weightsOf(toSize(map_index)).weights(),
+               out.subspan(toSize(rows.begin()) * row_bytes, toSize(rows.end() - rows.begin()) * row_bytes));
   }
 }
 

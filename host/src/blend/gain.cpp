@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "image/image_file.hpp"
+#include "io/counts.hpp"
 #include "io/read_file.hpp"
 #include "package/guides.hpp"
 #include "package/json_field.hpp"
@@ -42,7 +43,7 @@ void readFactors(const package::JsonField& field, const std::vector<std::string>
     if (found == names.end()) {
       field.fail(fmt::format("{}s of the package ({})", what, fmt::join(names, ", ")), package::quoted(name));
     }
-    gains[static_cast<std::size_t>(found - names.begin())] = static_cast<float>(field[name].number(0.0, kLargestGain));
+    gains[toSize(found - names.begin())] = static_cast<float>(field[name].number(0.0, kLargestGain));
   }
 }
 
@@ -50,7 +51,7 @@ void readFactors(const package::JsonField& field, const std::vector<std::string>
 std::vector<float> gainOfMaskCells(const Package& package, const std::vector<float>& regions) {
   const PackageMasks& masks = *package.description().masks;
   const image::Image picture = image::readImage(package.directory() / masks.file);
-  std::vector<float> gain(static_cast<std::size_t>(masks.tile_width * masks.tile_height), 1.0f);
+  std::vector<float> gain(toSize(masks.tile_width * masks.tile_height), 1.0f);
   for (std::size_t r = 0; r < regions.size(); ++r) {
     if (regions[r] == 1.0f) continue;
     for (const int k : package.description().regions[r].masks) {
@@ -58,8 +59,8 @@ std::vector<float> gainOfMaskCells(const Package& package, const std::vector<flo
         for (int x = 0; x < masks.tile_width; ++x) {
           const int row = k / masks.columns * masks.tile_height + y;
           const int column = k % masks.columns * masks.tile_width + x;
-          const auto code = picture.samples[static_cast<std::size_t>(row * picture.shape.width + column)];
-          gain[static_cast<std::size_t>(y * masks.tile_width + x)] +=
+          const auto code = picture.samples[toSize(row * picture.shape.width + column)];
+          gain[toSize(y * masks.tile_width + x)] +=
               (regions[r] - 1.0f) * static_cast<float>(std::to_integer<int>(code)) / 255.0f;
         }
       }
@@ -75,8 +76,7 @@ std::vector<float> resample(const std::vector<float>& gain, const PackageMasks& 
     return std::clamp(at - 0.5f, 0.0f, static_cast<float>(mask_cells - 1));
   };
   const auto at = [&](int x, int y) {
-    return gain[static_cast<std::size_t>(std::min(y, masks.tile_height - 1) * masks.tile_width +
-                                         std::min(x, masks.tile_width - 1))];
+    return gain[toSize(std::min(y, masks.tile_height - 1) * masks.tile_width + std::min(x, masks.tile_width - 1))];
   };
   std::vector<float> cells;
   for (int y = 0; y < set.tile_height; ++y) {

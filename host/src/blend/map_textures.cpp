@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/counts.hpp"
 #include "package/package_files.hpp"
 #include "package/weight_atlas.hpp"
 
@@ -37,7 +38,7 @@ TextureShape textureShape(const PackageMap& map, int differences) {
 }
 
 MapReader::MapReader(const Package& package, int map_index) {
-  const PackageMap& map = package.maps()[static_cast<std::size_t>(map_index)];
+  const PackageMap& map = package.maps()[toSize(map_index)];
   images_.push_back(package::openImage(package.directory() / map.neutral_file, package::neutralShape(map)));
   for (const PackageDifference& difference : map.differences) {
     images_.push_back(package::openImage(package.directory() / difference.file, package::differenceShape(map)));
@@ -50,7 +51,7 @@ void MapReader::load(TextureRows& textures) {
   for (int first = textures.begin(); first < textures.end(); first += kRowsAtOnce) {
     const int rows = std::min(kRowsAtOnce, textures.end() - first);
     tbb::parallel_for(std::size_t{0}, images_.size(), [&](std::size_t i) {
-      row_bytes_[i].resize(static_cast<std::size_t>(rows) * images_[i].shape().rowBytes());
+      row_bytes_[i].resize(toSize(rows) * images_[i].shape().rowBytes());
       images_[i].readRows(first, first + rows, row_bytes_[i]);
     });
     for (std::size_t i = 0; i < differences.size(); ++i) differences[i] = row_bytes_[i + 1];
@@ -61,15 +62,15 @@ void MapReader::load(TextureRows& textures) {
 namespace {
 
 std::shared_ptr<WeightMaps> loadWeightSet(const Package& package, int set, device::DeviceContext& context) {
-  const PackageWeights& weights = package.weightSets()[static_cast<std::size_t>(set)];
-  const WeightGrid grid{weights.tile_width, weights.tile_height, static_cast<int>(package.expressions().size()),
-                        weights.scale, weights.offset};
+  const PackageWeights& weights = package.weightSets()[toSize(set)];
+  const WeightCodes grid{weights.tile_width, weights.tile_height, static_cast<int>(package.expressions().size()),
+                         weights.scale, weights.offset};
   std::vector<std::byte> codes(grid.codeBytes());
   package::readWeightAtlas(
       package.description(), set, package.directory(),
       [&](int expression, int cell_row, int first_channel, int row_channels, std::span<const std::byte> row) {
-        const std::size_t first_cell = static_cast<std::size_t>(cell_row) * static_cast<std::size_t>(grid.columns);
-        const std::size_t channels = static_cast<std::size_t>(row_channels);
+        const std::size_t first_cell = grid.cell(cell_row, 0);
+        const std::size_t channels = toSize(row_channels);
         for (std::size_t b = 0; b < row.size(); ++b) {
           const int channel = first_channel + static_cast<int>(b % channels);
           codes[grid.codeIndex(expression, first_cell + b / channels, channel)] = row[b];

@@ -12,6 +12,7 @@
 
 #include "blend/number.hpp"
 #include "facezip/blend.hpp"
+#include "io/counts.hpp"
 #include "package/package_json.hpp"
 
 namespace facezip {
@@ -94,7 +95,7 @@ std::vector<float> weightsByName(const Package& package, const std::vector<std::
   std::vector<float> beta(package.expressions().size(), 0.0f);
   std::vector<bool> given(beta.size(), false);
   for (const auto& [name, weight] : weights) {
-    const std::size_t n = static_cast<std::size_t>(blend::expressionIndex(package, name, "weights"));
+    const std::size_t n = toSize(blend::expressionIndex(package, name, "weights"));
     if (given[n]) throw InputError({"", "weights", "each expression once", package::quoted(name) + " twice", ""});
     if (!(std::abs(weight) <= kLargestWeight)) {
       throw InputError({"", "weights", fmt::format("a number of at most {:g} either way for {}", kLargestWeight, name),

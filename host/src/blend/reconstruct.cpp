@@ -9,6 +9,7 @@
 #include "blend/band_blender.hpp"
 #include "blend/names.hpp"
 #include "image/image_file.hpp"
+#include "io/counts.hpp"
 #include "io/staged_directory.hpp"
 #include "package/package_files.hpp"
 #include "package/package_json.hpp"
@@ -31,8 +32,7 @@ std::vector<int> chosenExpressions(const Package& package, std::span<const std::
   std::set<int> seen;
   for (const int n : chosen) {
     if (seen.insert(n).second) continue;
-    throw InputError(
-        {"", "expression", "each once", package.expressions()[static_cast<std::size_t>(n)] + " twice", ""});
+    throw InputError({"", "expression", "each once", package.expressions()[toSize(n)] + " twice", ""});
   }
   return chosen;
 }
@@ -42,8 +42,8 @@ std::vector<image::ImageWriter> openWriters(const Package& package, const Packag
   const char* extension = map.sample_type == SampleType::kFloat32 ? ".exr" : ".png";
   std::vector<image::ImageWriter> writers;
   for (const int n : expressions) {
-    writers.emplace_back(folder / (package.expressions()[static_cast<std::size_t>(n)] + extension),
-                         package::neutralShape(map), map.colour_space);
+    writers.emplace_back(folder / (package.expressions()[toSize(n)] + extension), package::neutralShape(map),
+                         map.colour_space);
   }
   return writers;
 }
@@ -58,15 +58,15 @@ void reconstructMap(const Package& package, const PackageMap& map, blend::BandBl
   for (int begin = 0; begin < map.height; begin += band_rows) {
     const int rows = std::min(band_rows, map.height - begin);
     blender.loadRows(begin, begin + rows);
-    frame.resize(static_cast<std::size_t>(rows) * package::neutralShape(map).rowBytes());
+    frame.resize(toSize(rows) * package::neutralShape(map).rowBytes());
     for (std::size_t w = 0; w < writers.size(); ++w) {
       progress.checkCancelled();
-      const std::size_t n = static_cast<std::size_t>(expressions[w]);
+      const std::size_t n = toSize(expressions[w]);
       beta[n] = 1.0f;
       blender.blend(beta, frame);
       beta[n] = 0.0f;
       writers[w].writeRows(frame, rows);
-      progress.advance(done += static_cast<std::size_t>(rows));
+      progress.advance(done += toSize(rows));
     }
   }
   for (image::ImageWriter& writer : writers) writer.close();
@@ -74,7 +74,7 @@ void reconstructMap(const Package& package, const PackageMap& map, blend::BandBl
 
 std::size_t totalRows(const Package& package, std::size_t expressions) {
   std::size_t rows = 0;
-  for (const PackageMap& map : package.maps()) rows += static_cast<std::size_t>(map.height) * expressions;
+  for (const PackageMap& map : package.maps()) rows += toSize(map.height) * expressions;
   return rows;
 }
 

@@ -11,46 +11,41 @@
 
 namespace facezip::blend {
 
-WeightMaps::WeightMaps(device::DeviceContext& context, WeightGrid grid, std::span<const std::byte> codes,
+WeightMaps::WeightMaps(device::DeviceContext& context, WeightCodes grid, std::span<const std::byte> codes,
                        device::KernelVariant variant)
     : context_(context), grid_(std::move(grid)) {
   assert(codes.size() == grid_.codeBytes());
   const bool gpu = context.resolve(variant) == device::KernelVariant::kGpu;
-  items_per_block_ = gpu ? 16 : 1;
+  items_per_block_ = gpu ? WeightCodes::kBlockCells : 1;
   kernel_ = context.kernel("weight_blend.cl", "weight_blend",
                            fmt::format("-D LANES={} -D DIFFERENCES={} -D PREFETCH={}", gpu ? 1 : 16, grid_.channels(),
                                        context.clangBuiltins(variant) ? 1 : 0));
   local_size_ = context.workGroupSize(kernel_, gpu ? 64 : 16);
-  const std::size_t expressions = static_cast<std::size_t>(grid_.expressions);
-  const std::size_t channels = static_cast<std::size_t>(grid_.channels());
+  const std::size_t expressions = toSize(grid_.expressions);
+  const std::size_t channels = toSize(grid_.channels());
+  const std::size_t padded_cells = grid_.blocks() * WeightCodes::kBlockCells;
   codes_ = context.upload(codes, "the weight maps");
   active_ = context.allocate(expressions * sizeof(cl_int), CL_MEM_READ_ONLY, "expressions in use");
   beta_ = context.allocate(expressions * sizeof(float), CL_MEM_READ_ONLY, "blendshape weights");
   encoding_ = context.allocate(2 * channels * sizeof(float), CL_MEM_READ_ONLY, "weight encoding");
-  weights_ = context.allocate(grid_.blocks() * channels * 16 * sizeof(float), CL_MEM_READ_WRITE, "blended weights");
+  weights_ = context.allocate(padded_cells * channels * sizeof(float), CL_MEM_READ_WRITE, "blended weights");
   // Frames allocate nothing.
   active_expressions_.reserve(expressions);
   active_beta_.reserve(expressions);
   decoding_.resize(2 * channels);
-  gain_ = context.allocate(grid_.blocks() * 16 * sizeof(float), CL_MEM_READ_ONLY, "gains of cells");
+  gain_ = context.allocate(padded_cells * sizeof(float), CL_MEM_READ_ONLY, "gains of cells");
   setGain({});
-  kernel_.setArg(0, codes_);
-  kernel_.setArg(1, active_);
-  kernel_.setArg(2, beta_);
-  kernel_.setArg(3, encoding_);
-  kernel_.setArg(4, weights_);
-  kernel_.setArg(9, gain_);
 }
 
 void WeightMaps::setGain(std::span<const float> gain) {
-  assert(gain.empty() || gain.size() == grid_.cells());
-  std::vector<float> padded(grid_.blocks() * 16, 1.0f);
+  assert(gain.empty() || gain.size() == grid_.cellCount());
+  std::vector<float> padded(grid_.blocks() * WeightCodes::kBlockCells, 1.0f);
   std::ranges::copy(gain, padded.begin());
-  context_.write(gain_, padded.data(), padded.size() * sizeof(float), "gains of cells");
+  context_.write(gain_, padded, "gains of cells");
 }
 
 cl::Event WeightMaps::blend(std::span<const float> beta, int begin_row, int end_row) {
-  assert(beta.size() == static_cast<std::size_t>(grid_.expressions));
+  assert(beta.size() == toSize(grid_.expressions));
   assert(0 <= begin_row && begin_row < end_row && end_row <= grid_.rows);
   active_expressions_.clear();
   active_beta_.clear();
@@ -65,20 +60,16 @@ cl::Event WeightMaps::blend(std::span<const float> beta, int begin_row, int end_
     decoding_[i] = static_cast<float>(grid_.scale[i]);
     decoding_[grid_.scale.size() + i] = static_cast<float>(grid_.offset[i] * beta_sum);
   }
-  context_.write(active_, active_expressions_.data(), active_expressions_.size() * sizeof(cl_int),
-                 "expressions in use");
-  context_.write(beta_, active_beta_.data(), active_beta_.size() * sizeof(float), "blendshape weights");
-  context_.write(encoding_, decoding_.data(), decoding_.size() * sizeof(float), "weight encoding");
+  context_.write(active_, active_expressions_, "expressions in use");
+  context_.write(beta_, active_beta_, "blendshape weights");
+  context_.write(encoding_, decoding_, "weight encoding");
 
-  const std::size_t columns = static_cast<std::size_t>(grid_.columns);
-  const std::size_t first_block = static_cast<std::size_t>(begin_row) * columns / 16;
-  const std::size_t end_block = (static_cast<std::size_t>(end_row) * columns + 15) / 16;
-  kernel_.setArg(5, static_cast<cl_int>(active_expressions_.size()));
-  kernel_.setArg(6, static_cast<cl_int>(grid_.expressions));
-  kernel_.setArg(7, static_cast<cl_ulong>(first_block));
-  kernel_.setArg(8, static_cast<cl_ulong>(end_block - first_block));
-  const std::size_t items = (end_block - first_block) * items_per_block_;
-  return context_.run(kernel_, cl::NDRange(device::roundUp(items, local_size_)), cl::NDRange(local_size_));
+  const cl_ulong first_block = grid_.cell(begin_row, 0) / WeightCodes::kBlockCells;
+  const cl_ulong block_count = divideUp(toSize(end_row, grid_.columns), WeightCodes::kBlockCells) - first_block;
+  const std::size_t items = roundUp(block_count * items_per_block_, local_size_);
+  return context_.launch(kernel_, device::WorkItems(items).inGroupsOf(local_size_), codes_, active_, beta_, encoding_,
+                         weights_, static_cast<cl_int>(active_expressions_.size()), grid_.expressions, first_block,
+                         block_count, gain_);
 }
 
 void requireWeights(std::span<const float> beta, std::span<const std::string> names) {

@@ -6,32 +6,30 @@
 #include <string>
 #include <vector>
 
+#include "cl/layout.h"
 #include "device/device_context.hpp"
+#include "io/counts.hpp"
+#include "raster/weight_grid.hpp"
 
 namespace facezip::blend {
 
-/// Shape and decoding of the weight maps: W = scale[i] * code + offset[i].
-struct WeightGrid {
-  int columns = 0;             ///< cells
-  int rows = 0;                ///< cells
+/// A grid with the weight maps of N expressions, and how their codes decode: W = scale[i] * code + offset[i].
+struct WeightCodes : raster::WeightGrid {
   int expressions = 0;         ///< N
   std::vector<double> scale;   ///< C
   std::vector<double> offset;  ///< C
 
   int channels() const { return static_cast<int>(scale.size()); }  ///< C
-  std::size_t cells() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
   /// Blocks of 16 cells, the last one padded.
-  std::size_t blocks() const { return (cells() + 15) / 16; }
-  std::size_t codeBytes() const {
-    return blocks() * 16 * static_cast<std::size_t>(expressions) * static_cast<std::size_t>(channels());
-  }
+  std::size_t blocks() const { return divideUp(cellCount(), kBlockCells); }
+  std::size_t codeBytes() const { return toSize(blocks(), expressions, channels(), kBlockCells); }
   /// Where the code of `expression`, `cell` (row-major) and `channel` stands in [blocks][N][C][16].
   std::size_t codeIndex(int expression, std::size_t cell, int channel) const {
-    const std::size_t planes = static_cast<std::size_t>(expressions) * static_cast<std::size_t>(channels());
-    const std::size_t plane =
-        static_cast<std::size_t>(expression) * static_cast<std::size_t>(channels()) + static_cast<std::size_t>(channel);
-    return ((cell / 16) * planes + plane) * 16 + cell % 16;
+    return Layout(blocks(), expressions, channels(), kBlockCells)(cell / kBlockCells, expression, channel,
+                                                                  cell % kBlockCells);
   }
+
+  static constexpr std::size_t kBlockCells = FACEZIP_VECTOR;
 };
 
 /// The device side of kernels/cl/weight_blend.cl.
@@ -39,10 +37,10 @@ class WeightMaps {
  public:
   /// codes  grid.codeBytes() bytes in the order of grid.codeIndex()
   /// Throws DeviceError.
-  WeightMaps(device::DeviceContext& context, WeightGrid grid, std::span<const std::byte> codes,
+  WeightMaps(device::DeviceContext& context, WeightCodes grid, std::span<const std::byte> codes,
              device::KernelVariant variant = device::KernelVariant::kAuto);
 
-  const WeightGrid& grid() const { return grid_; }
+  const WeightCodes& grid() const { return grid_; }
 
   /// Sums the weight maps of cell rows [begin_row, end_row) into weights(); other rows are left as they were.
   /// Expressions whose beta is 0 cost nothing and change no bit.
@@ -50,7 +48,7 @@ class WeightMaps {
   cl::Event blend(std::span<const float> beta, int begin_row, int end_row);
   cl::Event blend(std::span<const float> beta) { return blend(beta, 0, grid_.rows); }
 
-  /// Multiplies what blend() gives from now on, cell by cell, by `gain`: cells() factors, row-major; empty: 1.
+  /// Multiplies what blend() gives from now on, cell by cell, by `gain`: cellCount() factors, row-major; empty: 1.
   void setGain(std::span<const float> gain);
 
   /// [blocks][C][16] float, the result of blend().
@@ -58,7 +56,7 @@ class WeightMaps {
 
  private:
   device::DeviceContext& context_;
-  WeightGrid grid_;
+  WeightCodes grid_;
   std::size_t items_per_block_;
   cl::Kernel kernel_;
   std::size_t local_size_;

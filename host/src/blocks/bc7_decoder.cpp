@@ -10,7 +10,7 @@ using uchar = std::uint8_t;
 using ushort = std::uint16_t;
 using uint = std::uint32_t;
 #define constant constexpr
-#include "bc7_tables.cl"
+#include "cl/bc7_tables.h"
 #undef constant
 
 /// Takes bits from the lowest up.

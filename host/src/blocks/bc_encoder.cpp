@@ -6,6 +6,8 @@
 #include <cstring>
 #include <vector>
 
+#include "cl/layout.h"
+
 namespace facezip::blocks {
 namespace {
 
@@ -74,22 +76,17 @@ void BcEncoder::encodeOnDevice(const DeviceTexels& texels, const cl::Buffer& blo
     device::requireBytes(context_, texels.weights, weights * sizeof(float), "weights of texels to code");
   }
   const Kernel which = kernelOf(options_.format);
-  cl::Kernel kernel = context_.kernel(which.file, which.name, defines(texels, decoded() != nullptr));
+  const cl::Kernel kernel = context_.kernel(which.file, which.name, defines(texels, decoded() != nullptr));
   // Buffers that a kernel does not touch are another's: null ones are not taken by every driver.
   const auto orOther = [&](const cl::Buffer& buffer) { return buffer() != nullptr ? buffer : texels.samples; };
-  kernel.setArg(0, places);
-  kernel.setArg(1, orOther(layout.tiles));
-  kernel.setArg(2, texels.samples);
-  kernel.setArg(3, orOther(texels.weights));
   const std::array<float, 4>& scale = options_.channel_weights;
-  kernel.setArg(4, cl_float4{{scale[0], scale[1], scale[2], scale[3]}});
-  kernel.setArg(5, blocks);
-  kernel.setArg(6, orOther(decoded));
-  const std::size_t lanes = gpu_ ? 1 : 16;
+  const std::size_t lanes = gpu_ ? 1 : FACEZIP_VECTOR;
   // Single work-items on CPUs: one has 16 blocks, and all of a core's registers.
   const std::size_t local = gpu_ ? context_.workGroupSize(kernel, 64) : 1;
-  const std::size_t items = (places.blocks + lanes - 1) / lanes;
-  context_.run(kernel, cl::NDRange(device::roundUp(items, local)), cl::NDRange(local));
+  const std::size_t items = roundUp(divideUp(std::size_t{places.blocks}, lanes), local);
+  context_.launch(kernel, device::WorkItems(items).inGroupsOf(local), places, orOther(layout.tiles), texels.samples,
+                  orOther(texels.weights), cl_float4{{scale[0], scale[1], scale[2], scale[3]}}, blocks,
+                  orOther(decoded));
 }
 
 void BcEncoder::encode(const TexelRows& texels, std::span<std::byte> blocks, std::span<float> decoded) {
@@ -107,8 +104,8 @@ void BcEncoder::encode(const TexelRows& texels, std::span<std::byte> blocks, std
   blocks_.reserve(blocks.size());
   if (!decoded.empty()) decoded_.reserve(decoded.size_bytes());
   encodeOnDevice(on_device, blocks_.buffer(), decoded.empty() ? cl::Buffer() : decoded_.buffer());
-  context_.read(blocks_.buffer(), blocks.data(), blocks.size(), "blocks");
-  if (!decoded.empty()) context_.read(decoded_.buffer(), decoded.data(), decoded.size_bytes(), "decoded blocks");
+  context_.read(blocks_.buffer(), blocks, "blocks");
+  if (!decoded.empty()) context_.read(decoded_.buffer(), decoded, "decoded blocks");
 }
 
 void BcEncoder::fill(const cl::Buffer& blocks, int width, int rows, std::span<const float> colour) {

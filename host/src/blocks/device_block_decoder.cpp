@@ -37,13 +37,11 @@ void decodeOnDevice(device::DeviceContext& context, BlockFormat format, int chan
   const std::string defines =
       fmt::format("-D FORMAT={} -D CHANNELS={} {}{}", formatNumber(format), channels,
                   bytes ? "-D TEXEL=uchar -D WHOLE" : "-D TEXEL=float", layout.tiled() ? " -D TILES" : "");
-  cl::Kernel kernel = context.kernel("block_decode.cl", "block_decode", defines);
-  kernel.setArg(0, places);
-  kernel.setArg(1, layout.tiled() ? layout.tiles : blocks);
-  kernel.setArg(2, blocks);
-  kernel.setArg(3, texels);
+  const cl::Kernel kernel = context.kernel("block_decode.cl", "block_decode", defines);
   const std::size_t local = context.workGroupSize(kernel, 64);
-  context.run(kernel, cl::NDRange(device::roundUp(places.blocks, local)), cl::NDRange(local));
+  const std::size_t items = roundUp(std::size_t{places.blocks}, local);
+  context.launch(kernel, device::WorkItems(items).inGroupsOf(local), places, layout.tiled() ? layout.tiles : blocks,
+                 blocks, texels);
 }
 
 }  // namespace facezip::blocks

@@ -1,4 +1,4 @@
-// texel_layout.hpp - where the texels of a picture lie in a buffer of the device; kernels/cl/block_texels.cl has the
+// texel_layout.hpp - where the texels of a picture lie in a buffer of the device; kernels/cl/block_texels.h has the
 // same.
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace facezip::blocks {
 
-/// Sides of common.cl's tiles.
+/// Sides of tiles.h's tiles.
 inline constexpr int kTileSide = 16;
 inline constexpr int kTileTexels = kTileSide * kTileSide;
 
@@ -38,8 +38,9 @@ struct TexelLayout {
                              int textures, int texture);
 };
 
-/// Layout of block_texels.cl for blocks of 4 x 4 texels.
+/// Layout of block_texels.h for blocks of 4 x 4 texels.
 struct KernelLayout {
+  using KernelStruct = void;
   cl_int width, rows;
   cl_int blocks_x, blocks_y;
   cl_ulong texel_stride, channel_stride, row_stride;

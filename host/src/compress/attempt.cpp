@@ -9,15 +9,15 @@
 #include "compress/fit_choice.hpp"
 #include "compress/method_record.hpp"
 #include "compress/write_stage.hpp"
-#include "raster/weight_grid.hpp"
+#include "raster/grid_masks.hpp"
 
 namespace facezip::compress {
 namespace {
 using MapGroups = std::vector<std::vector<GridMap>>;
 
-raster::WeightGrid layGrid(const CompressionJob& job, const PackageForm& form) {
+raster::GridMasks layGrid(const CompressionJob& job, const PackageForm& form) {
   job.run.progress.stage("weight grid", 0);
-  return raster::makeWeightGrid(job.masks, *job.maps.maps[job.maps.reference].raster, form.weight_scale);
+  return raster::makeGridMasks(job.masks, *job.maps.maps[job.maps.reference].raster, form.weight_scale);
 }
 
 /// Weights of every group as the method starts from them.
@@ -91,7 +91,7 @@ Attempt makePackage(const CompressionJob& job, const PackageForm& form, const st
   const WeightSpace space = weightSpace(job.maps, form);
   const MapGroups groups = groupMaps(job.maps, job.options.weights_per_map, form.weight_scale);
   const int band_rows = job.memory.bandRows(form);
-  raster::WeightGrid grid = layGrid(job, form);
+  raster::GridMasks grid = layGrid(job, form);
   const MaskGuides guides = makeMaskGuides(job.model.face, job.model.masks, grid);
   job.run.clock.book("weight grid");
   noteSpareTextures(space, job.run.progress);

@@ -9,6 +9,7 @@
 #include "compress/refine/difference_fit.hpp"
 #include "compress/refine/refinement.hpp"
 #include "facezip/geometry/skin_strain.hpp"
+#include "io/counts.hpp"
 #include "raster/cell_samples.hpp"
 
 namespace facezip::compress {
@@ -37,10 +38,10 @@ EncodedWeights normalisedInfluences(const geometry::TriangleMesh& neutral, const
   const std::vector<int> source = raster::nearestSampled(samples, columns, rows);
   // Normalised influences are shares: 255 codes from 0 to 1.
   EncodedWeights encoded{{1.0 / 255.0, 1.0 / 255.0}, {0.0, 0.0}, {}};
-  encoded.codes.assign(static_cast<std::size_t>(expressions * kCompressStretchMaps) * samples.size(), 0);
+  encoded.codes.assign(toSize(expressions * kCompressStretchMaps) * samples.size(), 0);
   for (std::size_t cell = 0; cell < samples.size(); ++cell) {
     if (source[cell] < 0) continue;
-    const raster::TexelSample& at = samples[static_cast<std::size_t>(source[cell])];
+    const raster::TexelSample& at = samples[toSize(source[cell])];
     const auto corner = [&](int c) { return influences.row(neutral.triangles(at.triangle, c)).array(); };
     const Eigen::ArrayXd here = static_cast<double>(at.b0) * corner(0) + static_cast<double>(at.b1) * corner(1) +
                                 (1.0 - static_cast<double>(at.b0) - static_cast<double>(at.b1)) * corner(2);
@@ -48,9 +49,8 @@ EncodedWeights normalisedInfluences(const geometry::TriangleMesh& neutral, const
       const Eigen::ArrayXd of_map = here.reshaped(2, expressions).row(i);
       const Eigen::ArrayXd shares = (of_map - of_map.maxCoeff()).exp();  // Eq. 12, without overflow
       for (Eigen::Index n = 0; n < expressions; ++n) {
-        const std::size_t entry = (static_cast<std::size_t>(n) * samples.size() + cell) * kCompressStretchMaps;
-        encoded.codes[entry + static_cast<std::size_t>(i)] =
-            static_cast<std::uint8_t>(std::lround(255.0 * shares[n] / shares.sum()));
+        const std::size_t entry = (toSize(n) * samples.size() + cell) * kCompressStretchMaps;
+        encoded.codes[entry + toSize(i)] = static_cast<std::uint8_t>(std::lround(255.0 * shares[n] / shares.sum()));
       }
     }
   }
@@ -72,12 +72,11 @@ TileMasks CompressStretchTextures::tiles(const OpenMap& map, int begin, int end)
 const cl::Buffer& CompressStretchTextures::compute(const GridMap& map, const MapBand& band) {
   const WeightSpace& space = window_.space();
   const WindowRows rows = cellRowsOf(band.begin, band.end, map.weight_scale, space.rows);
-  std::vector<float> weights(static_cast<std::size_t>(rows.count()) * space.rowFloats());
+  std::vector<float> weights(toSize(rows.count()) * space.rowFloats());
   decodeRows(influences_, space, rows.begin, rows.end, weights);
   window_.set(rows, weights, weights);
-  textures_.reserve(std::max<std::size_t>(1, band.tiles.tileCount() *
-                                                 static_cast<std::size_t>(kCompressStretchMaps * band.shape.channels) *
-                                                 kTileTexels * sizeof(float)));
+  textures_.reserve(std::max<std::size_t>(
+      1, band.tiles.tileCount() * toSize(kCompressStretchMaps * band.shape.channels) * kTileTexels * sizeof(float)));
   launchCompressStretch(context_, {band.tiles, band.shape, band.differences, band.begin, map.weight_scale}, window_,
                         gpu_, textures_.buffer());
   return textures_.buffer();
@@ -88,24 +87,17 @@ void launchCompressStretch(device::DeviceContext& context, const GridBand& band,
   const std::size_t tiles = band.tiles.tileCount();
   if (tiles == 0) return;
   device::requireBytes(context, band.differences, differenceBufferBytes(band.shape, tiles), "differences of a band");
-  device::requireBytes(
-      context, textures,
-      tiles * static_cast<std::size_t>(window.space().textures * band.shape.channels) * kTileTexels * sizeof(float),
-      "compress and stretch maps");
+  device::requireBytes(context, textures,
+                       tiles * toSize(window.space().textures * band.shape.channels) * kTileTexels * sizeof(float),
+                       "compress and stretch maps");
   const std::size_t rows = gpu ? 1 : kTileSide;
-  cl::Kernel kernel =
+  const cl::Kernel kernel =
       context.kernel("compress_stretch.cl", "compress_stretch",
                      fmt::format("{} -D ROWS={}", gridDefines(band.shape, window.space(), band.weight_scale), rows));
-  const cl::Buffer* buffers[] = {&band.tiles.positions(), &band.tiles.maskWeights(), &band.differences,
-                                 &window.weightsBuffer(), &textures};
-  cl_uint argument = 0;
-  for (const cl::Buffer* buffer : buffers) kernel.setArg(argument++, *buffer);
-  kernel.setArg(argument++, static_cast<cl_int>(band.first_row));
-  kernel.setArg(argument++, static_cast<cl_int>(window.rows().begin));
-  kernel.setArg(argument++, static_cast<cl_int>(window.space().columns));
-  kernel.setArg(argument++, static_cast<cl_int>(window.space().rows));
   const std::size_t items = kTileTexels / rows;
-  context.run(kernel, cl::NDRange(items, tiles), cl::NDRange(context.workGroupSize(kernel, items), 1));
+  context.launch(kernel, device::WorkItems(items, tiles).inGroupsOf(context.workGroupSize(kernel, items), 1),
+                 band.tiles.positions(), band.tiles.maskWeights(), band.differences, window.weightsBuffer(), textures,
+                 band.first_row, window.rows().begin, window.space().columns, window.space().rows);
 }
 
 }  // namespace facezip::compress

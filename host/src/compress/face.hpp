@@ -46,7 +46,8 @@ struct FaceMasks {
   geometry::MaskWeights masks;
 };
 
-/// Samples the region and solves the masks. Notes a guessed unit, and a size that is no head's. Throws InputError and SolverError.
+/// Samples the region and solves the masks. Notes a guessed unit, and a size that is no head's.
+/// Throws InputError and SolverError.
 FaceMasks makeFaceMasks(const Capture& capture, const Face& face, const CompressOptions& options, Progress& progress);
 
 }  // namespace facezip::compress

@@ -32,26 +32,26 @@ std::vector<std::array<double, 2>> sampleUvs(const Face& face, const FaceMasks& 
 }
 
 /// Mask k is tile k; cells are means of `step` x `step` cells of the grid.
-PackageMasks layOut(const FaceMasks& masks, const raster::WeightGrid& grid, int step) {
+PackageMasks layOut(const FaceMasks& masks, const raster::GridMasks& grid, int step) {
   PackageMasks out;
   out.file = package::kMasksFile;
   out.count = masks.masks.mask_count;
-  out.tile_width = (grid.width + step - 1) / step;
-  out.tile_height = (grid.height + step - 1) / step;
+  out.tile_width = (grid.columns + step - 1) / step;
+  out.tile_height = (grid.rows + step - 1) / step;
   const double square = std::sqrt(static_cast<double>(out.count) * out.tile_height / out.tile_width);
   out.columns = std::clamp(static_cast<int>(std::ceil(square)), 1, out.count);
   out.rows = (out.count - 1) / out.columns + 1;
   return out;
 }
 
-image::Image drawMasks(const PackageMasks& masks, const raster::WeightGrid& grid, int step) {
+image::Image drawMasks(const PackageMasks& masks, const raster::GridMasks& grid, int step) {
   image::Image picture{package::masksShape(masks), {}};
   const std::size_t width = size(picture.shape.width);
   std::vector<float> sums(width * size(picture.shape.height), 0.0f);
   std::vector<float> cells(size(masks.tile_width) * size(masks.tile_height), 0.0f);
-  for (int y = 0; y < grid.height; ++y) {
-    for (int x = 0; x < grid.width; ++x) {
-      const std::size_t cell = size(y) * size(grid.width) + size(x);
+  for (int y = 0; y < grid.rows; ++y) {
+    for (int x = 0; x < grid.columns; ++x) {
+      const std::size_t cell = size(y) * size(grid.columns) + size(x);
       cells[size(y / step) * size(masks.tile_width) + size(x / step)] += 1.0f;
       for (int e = grid.cells.cell_begin[cell]; e < grid.cells.cell_begin[cell + 1]; ++e) {
         const int k = grid.cells.mask_index[size(e)];
@@ -96,8 +96,8 @@ std::vector<PackageRegion> nameRegions(const FaceMasks& masks) {
 
 }  // namespace
 
-MaskGuides makeMaskGuides(const Face& face, const FaceMasks& masks, const raster::WeightGrid& grid) {
-  int step = (std::max(grid.width, grid.height) - 1) / package::kMostMaskCells + 1;
+MaskGuides makeMaskGuides(const Face& face, const FaceMasks& masks, const raster::GridMasks& grid) {
+  int step = (std::max(grid.columns, grid.rows) - 1) / package::kMostMaskCells + 1;
   MaskGuides guides;
   const auto fits = [&guides] {
     const image::ImageShape shape = package::masksShape(guides.masks);

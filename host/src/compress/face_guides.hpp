@@ -9,7 +9,7 @@
 #include "compress/face.hpp"
 #include "facezip/package.hpp"
 #include "image/image_file.hpp"
-#include "raster/weight_grid.hpp"
+#include "raster/grid_masks.hpp"
 
 namespace facezip::compress {
 
@@ -23,7 +23,7 @@ struct MaskGuides {
 /// Averages the masks over cells until no side has more than 128 of them, and groups them by where their samples lie in
 /// the bounding box of the region: its thirds from right to left (the subject's; +x) and from low to high (+y), so at
 /// most nine regions, "upper left" to "lower right". A head that does not stand upright along y gets other names.
-MaskGuides makeMaskGuides(const Face& face, const FaceMasks& masks, const raster::WeightGrid& grid);
+MaskGuides makeMaskGuides(const Face& face, const FaceMasks& masks, const raster::GridMasks& grid);
 
 /// Writes mesh.glb into `directory`: the neutral, and as morph targets the expressions that have a mesh. In metres
 /// where the unit is known or can be guessed, else as it is in the capture. expressions  N, #V by 3 or 0 rows Throws

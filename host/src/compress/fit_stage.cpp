@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "compress/codes/texture_range.hpp"
+#include "compress/codes/difference_texture_range.hpp"
 #include "compress/refine/refinement.hpp"
 
 namespace facezip::compress {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "compress/bands/map_bands.hpp"
-#include "compress/codes/texture_encoder.hpp"
+#include "compress/codes/difference_texture_encode.hpp"
 #include "facezip/package.hpp"
 #include "package/guides.hpp"
 #include "package/package_writer.hpp"

@@ -3,63 +3,12 @@
 #include <fmt/format.h>
 
 #include <bit>
-#include <cstdlib>
-#include <filesystem>
+#include <cassert>
 #include <optional>
 
 #include "device/kernel_sources.hpp"
-#include "io/read_file.hpp"
 
 namespace facezip::device {
-
-namespace {
-
-/// Text of one file, as it stands.
-std::string kernelText(std::string_view name, const char* folder) {
-  if (folder != nullptr) {
-    const std::filesystem::path file = std::filesystem::path(folder) / name;
-    std::error_code error;
-    if (std::filesystem::exists(file, error)) return io::readFile(file, "a kernel file");
-  }
-  const auto& embedded = embeddedKernelSources();
-  const auto found = embedded.find(name);
-  if (found == embedded.end()) throw DeviceError(fmt::format("kernel file {}", name), 0, "not part of this build");
-  return std::string(found->second);
-}
-
-/// Appends the text of `name` to `source`, with the files that it includes in place of the lines that say so: drivers
-/// see one text, and no folder. Lines are counted so that messages name the file and line as they stand.
-void appendKernel(std::string_view name, const char* folder, std::string& source) {
-  constexpr std::string_view kInclude = "#include \"";
-  const std::string text = kernelText(name, folder);
-  source += fmt::format("#line 1 \"{}\"\n", name);
-  int line_number = 1;
-  for (std::size_t begin = 0; begin < text.size(); ++line_number) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view line = std::string_view(text).substr(begin, end - begin);
-    if (line.starts_with(kInclude)) {
-      const std::string_view rest = line.substr(kInclude.size());
-      appendKernel(rest.substr(0, rest.find('"')), folder, source);
-      source += fmt::format("#line {} \"{}\"\n", line_number + 1, name);
-    } else {
-      source.append(line).append("\n");
-    }
-    begin = end + 1;
-  }
-}
-
-}  // namespace
-
-std::string kernelSource(std::string_view file_name) {
-  const char* folder = std::getenv("FACEZIP_KERNEL_DIR");
-  if (folder != nullptr && !std::filesystem::is_directory(folder)) {
-    throw InputError({"FACEZIP_KERNEL_DIR", "", "a folder with kernel files", folder, "unset it for those built in"});
-  }
-  std::string source;
-  appendKernel("common.cl", folder, source);
-  appendKernel(file_name, folder, source);
-  return source;
-}
 
 namespace {
 
@@ -168,30 +117,37 @@ cl::Buffer DeviceContext::allocate(std::size_t bytes, cl_mem_flags flags, std::s
   }
 }
 
-void DeviceContext::write(const cl::Buffer& buffer, const void* data, std::size_t bytes, std::string_view what,
-                          std::size_t offset_bytes) const {
-  if (bytes == 0) return;
+void DeviceContext::writeBytes(const cl::Buffer& buffer, std::span<const std::byte> data, std::string_view what,
+                               std::size_t offset_bytes) const {
+  if (data.empty()) return;
   try {
-    queue_.enqueueWriteBuffer(buffer, CL_TRUE, offset_bytes, bytes, data);
+    queue_.enqueueWriteBuffer(buffer, CL_TRUE, offset_bytes, data.size(), data.data());
   } catch (const cl::Error& error) {
     throw toDeviceError(error, fmt::format("writing {}", what), info_);
   }
 }
 
-void DeviceContext::read(const cl::Buffer& buffer, void* data, std::size_t bytes, std::string_view what,
-                         std::size_t offset_bytes) const {
-  if (bytes == 0) return;
+void DeviceContext::readBytes(const cl::Buffer& buffer, std::span<std::byte> data, std::string_view what,
+                              std::size_t offset_bytes) const {
+  if (data.empty()) return;
   try {
-    queue_.enqueueReadBuffer(buffer, CL_TRUE, offset_bytes, bytes, data);
+    queue_.enqueueReadBuffer(buffer, CL_TRUE, offset_bytes, data.size(), data.data());
   } catch (const cl::Error& error) {
     throw toDeviceError(error, fmt::format("reading {}", what), info_);
   }
 }
 
-cl::Event DeviceContext::run(const cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRange& local) const {
+void DeviceContext::throwBadArgument(const cl::Error& error, const cl::Kernel& kernel, cl_uint index) const {
+  throw toDeviceError(error, fmt::format("argument {} of {}", index, kernel.getInfo<CL_KERNEL_FUNCTION_NAME>()), info_);
+}
+
+cl::Event DeviceContext::enqueue(const cl::Kernel& kernel, const WorkItems& items,
+                                 [[maybe_unused]] cl_uint argument_count) const {
+  // A kernel keeps what an earlier launch set: one argument too few would go unseen where it is launched twice.
+  assert(kernel.getInfo<CL_KERNEL_NUM_ARGS>() == argument_count);
   cl::Event event;
   try {
-    queue_.enqueueNDRangeKernel(kernel, cl::NullRange, global, local, nullptr, &event);
+    queue_.enqueueNDRangeKernel(kernel, cl::NullRange, items.all(), items.group(), nullptr, &event);
   } catch (const cl::Error& error) {
     throw toDeviceError(error, fmt::format("running {}", kernel.getInfo<CL_KERNEL_FUNCTION_NAME>()), info_);
   }

@@ -18,21 +18,64 @@
 #pragma GCC diagnostic pop
 #endif
 
+#include <concepts>
 #include <map>
 #include <mutex>
+#include <ranges>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "device/program_cache.hpp"
 #include "facezip/device.hpp"
 #include "facezip/progress.hpp"
+#include "io/counts.hpp"
 
 namespace facezip::device {
 
 /// Which form of a kernel to run, where one source cannot serve both kinds of device.
 enum class KernelVariant { kAuto, kCpu, kGpu };
+
+/// How many work-items run along one to three axes, and how many form a group:
+///   WorkItems(tiles, expressions)                   the driver chooses the groups
+///   WorkItems(tiles, expressions).inGroupsOf(1, 1)
+class WorkItems {
+ public:
+  template <std::integral... Counts>
+    requires(sizeof...(Counts) >= 1 && sizeof...(Counts) <= 3)
+  explicit WorkItems(Counts... counts) : all_(toSize(counts)...) {}
+
+  template <std::integral... Counts>
+    requires(sizeof...(Counts) >= 1 && sizeof...(Counts) <= 3)
+  WorkItems inGroupsOf(Counts... counts) const {
+    WorkItems items = *this;
+    items.group_ = cl::NDRange(toSize(counts)...);
+    return items;
+  }
+
+  const cl::NDRange& all() const { return all_; }
+  const cl::NDRange& group() const { return group_; }
+
+ private:
+  cl::NDRange all_;
+  cl::NDRange group_ = cl::NullRange;
+};
+
+/// What a kernel takes: a number of exactly the type that its parameter has, a struct that says it is laid out as the
+/// kernel's (`using KernelStruct = void;`), or a buffer, or what holds one.
+template <typename T>
+concept KernelArgument = std::same_as<T, cl_int> || std::same_as<T, cl_ulong> || std::same_as<T, cl_float> ||
+                         std::same_as<T, cl_float4> || std::same_as<T, cl::Buffer> ||
+                         (std::is_trivially_copyable_v<T> && requires { typename T::KernelStruct; }) || requires(const T& holder) {
+                           { holder.buffer() } -> std::same_as<const cl::Buffer&>;
+                         };
+
+/// Values that lie one behind the other and can be copied as bytes.
+template <typename R>
+concept Values = std::ranges::contiguous_range<R> && std::ranges::sized_range<R> &&
+                 std::is_trivially_copyable_v<std::ranges::range_value_t<R>>;
 
 class DeviceContext {
  public:
@@ -68,30 +111,65 @@ class DeviceContext {
   /// allocation or the allocation fails. A size of 0 gives a buffer of one byte, since OpenCL has no empty ones.
   cl::Buffer allocate(std::size_t bytes, cl_mem_flags flags, std::string_view what) const;
 
-  /// Allocates and fills. T must be trivially copyable.
-  template <typename T>
-  cl::Buffer upload(std::span<const T> values, std::string_view what) const {
-    cl::Buffer buffer = allocate(values.size_bytes(), CL_MEM_READ_ONLY, what);
-    if (!values.empty()) write(buffer, values.data(), values.size_bytes(), what);
+  /// Allocates and fills.
+  template <Values R>
+  cl::Buffer upload(const R& values, std::string_view what) const {
+    const std::span data(values);
+    cl::Buffer buffer = allocate(data.size_bytes(), CL_MEM_READ_ONLY, what);
+    write(buffer, data, what);
     return buffer;
-  }
-  template <typename T>
-  cl::Buffer upload(const std::vector<T>& values, std::string_view what) const {
-    return upload(std::span<const T>(values), what);
   }
 
   /// Blocking copies between host memory and a buffer, `offset_bytes` into it.
-  void write(const cl::Buffer& buffer, const void* data, std::size_t bytes, std::string_view what,
-             std::size_t offset_bytes = 0) const;
-  void read(const cl::Buffer& buffer, void* data, std::size_t bytes, std::string_view what,
-            std::size_t offset_bytes = 0) const;
+  template <Values R>
+  void write(const cl::Buffer& buffer, const R& values, std::string_view what, std::size_t offset_bytes = 0) const {
+    const std::span data(values);
+    writeBytes(buffer, std::as_bytes(data), what, offset_bytes);
+  }
+  template <Values R>
+  void read(const cl::Buffer& buffer, R&& values, std::string_view what, std::size_t offset_bytes = 0) const {
+    const std::span data(values);
+    readBytes(buffer, std::as_writable_bytes(data), what, offset_bytes);
+  }
+  /// The first `count` values of a buffer.
+  template <typename T>
+  std::vector<T> download(const cl::Buffer& buffer, std::size_t count, std::string_view what) const {
+    std::vector<T> values(count);
+    read(buffer, values, what);
+    return values;
+  }
 
-  /// Enqueues `kernel` on queue(). `local` may be cl::NullRange. Returns the event, for timing.
-  cl::Event run(const cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRange& local) const;
+  /// Enqueues `kernel` on queue() with all of its arguments, in their order. Returns the event, for timing.
+  /// Throws DeviceError, also where the kernel has more arguments or of other sizes.
+  template <KernelArgument... Arguments>
+  cl::Event launch(cl::Kernel kernel, const WorkItems& items, const Arguments&... arguments) const {
+    cl_uint index = 0;
+    (setArgument(kernel, index++, arguments), ...);
+    return enqueue(kernel, items, index);
+  }
   void finish() const;
 
  private:
   cl::Program buildProgram(std::string_view file_name, const std::string& options);
+  void writeBytes(const cl::Buffer& buffer, std::span<const std::byte> data, std::string_view what,
+                  std::size_t offset_bytes) const;
+  void readBytes(const cl::Buffer& buffer, std::span<std::byte> data, std::string_view what,
+                 std::size_t offset_bytes) const;
+
+  template <typename T>
+  void setArgument(cl::Kernel& kernel, cl_uint index, const T& argument) const {
+    if constexpr (requires { argument.buffer(); }) {
+      setArgument(kernel, index, argument.buffer());
+    } else {
+      try {
+        kernel.setArg(index, argument);
+      } catch (const cl::Error& error) {
+        throwBadArgument(error, kernel, index);
+      }
+    }
+  }
+  [[noreturn]] void throwBadArgument(const cl::Error& error, const cl::Kernel& kernel, cl_uint index) const;
+  cl::Event enqueue(const cl::Kernel& kernel, const WorkItems& items, cl_uint argument_count) const;
 
   DeviceInfo info_;
   Progress* progress_;
@@ -105,8 +183,5 @@ class DeviceContext {
 
 /// Converts a failed OpenCL call into the DeviceError that facezip throws; `step` says what was being done.
 DeviceError toDeviceError(const cl::Error& error, std::string_view step, const DeviceInfo& info);
-
-/// Smallest multiple of `step` that is not below `value`.
-constexpr std::size_t roundUp(std::size_t value, std::size_t step) { return (value + step - 1) / step * step; }
 
 }  // namespace facezip::device

@@ -43,11 +43,18 @@ class PooledBuffer {
   const cl::Buffer& reserve(std::size_t bytes);
 
   /// Makes room for `values` and copies them in.
-  template <typename T>
-  const cl::Buffer& upload(std::span<const T> values) {
-    reserve(values.size_bytes());
-    if (!values.empty()) context_.write(buffer_, values.data(), values.size_bytes(), what_);
+  template <Values R>
+  const cl::Buffer& upload(const R& values) {
+    const std::span data(values);
+    reserve(data.size_bytes());
+    context_.write(buffer_, data, what_);
     return buffer_;
+  }
+
+  /// Copies the first values.size() values out.
+  template <Values R>
+  void read(R&& values) const {
+    context_.read(buffer_, values, what_);
   }
 
   /// Maps `bytes` for the host to read.

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "io/counts.hpp"
+
 namespace facezip::raster {
 namespace {
 
@@ -42,27 +44,24 @@ class Gutter {
         begin_(begin),
         end_(end),
         gutter_(gutter),
-        offsets_(static_cast<std::size_t>(end - begin) * static_cast<std::size_t>(width), kFar) {}
+        offsets_(toSize(end - begin, width), kFar) {}
 
   void fill(std::span<TexelSample> samples) {
     tbb::parallel_for(tbb::blocked_range<int>(0, width_, 256),
                       [&](const tbb::blocked_range<int>& columns) { findRows(columns.begin(), columns.end()); });
-    tbb::parallel_for(begin_, end_, [&](int row) {
-      fillRow(row, samples.subspan(index(row - begin_, 0), static_cast<std::size_t>(width_)));
-    });
+    tbb::parallel_for(begin_, end_,
+                      [&](int row) { fillRow(row, samples.subspan(index(row - begin_, 0), toSize(width_))); });
   }
 
  private:
-  std::size_t index(int row, int column) const {
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column);
-  }
+  std::size_t index(int row, int column) const { return toSize(row, width_) + toSize(column); }
   const TexelSample& coveredAt(int row, int column) const { return covered_[index(row - covered_begin_, column)]; }
 
   /// The nearest covered rows of columns [first, last): from above, then from below.
   void findRows(int first, int last) {
     const auto visit = [&](int row, std::vector<int>& found) {
       for (int x = first; x < last; ++x) {
-        int& at = found[static_cast<std::size_t>(x - first)];
+        int& at = found[toSize(x - first)];
         if (coveredAt(row, x).kind == TexelSample::Kind::kCovered) at = row;
         if (row < begin_ || row >= end_) continue;
         RowOffset& offset = offsets_[index(row - begin_, x)];
@@ -72,7 +71,7 @@ class Gutter {
       }
     };
     constexpr int kNowhere = -(1 << 24);
-    std::vector<int> found(static_cast<std::size_t>(last - first), kNowhere);
+    std::vector<int> found(toSize(last - first), kNowhere);
     for (int row = covered_begin_; row < end_; ++row) visit(row, found);
     std::fill(found.begin(), found.end(), kNowhere);
     for (int row = covered_end_ - 1; row >= begin_; --row) visit(row, found);
@@ -97,7 +96,7 @@ class Gutter {
     std::size_t next = 0;
     for (int x = 0; x < width_ && !sites.empty(); ++x) {
       while (next + 1 < sites.size() && sites[next + 1].first <= x) ++next;
-      TexelSample& sample = samples[static_cast<std::size_t>(x)];
+      TexelSample& sample = samples[toSize(x)];
       const int site = sites[next].site;
       if (sample.kind != TexelSample::Kind::kEmpty) continue;
       if (distance2(x, site, offsets) > std::int64_t{gutter_} * gutter_) continue;

@@ -4,6 +4,8 @@
 #include <queue>
 #include <utility>
 
+#include "io/counts.hpp"
+
 namespace facezip::raster {
 
 std::vector<int> nearestMarked(std::span<const std::uint8_t> marked, int columns, int rows) {
@@ -20,9 +22,9 @@ std::vector<int> nearestMarked(std::span<const std::uint8_t> marked, int columns
     const int y = cell / columns;
     for (const auto& [nx, ny] : {std::pair{x - 1, y}, std::pair{x + 1, y}, std::pair{x, y - 1}, std::pair{x, y + 1}}) {
       if (nx < 0 || ny < 0 || nx >= columns || ny >= rows) continue;
-      int& next = source[static_cast<std::size_t>(ny * columns + nx)];
+      int& next = source[toSize(ny * columns + nx)];
       if (next >= 0) continue;
-      next = source[static_cast<std::size_t>(cell)];
+      next = source[toSize(cell)];
       front.push(ny * columns + nx);
     }
   }

@@ -4,16 +4,14 @@
 
 #include <algorithm>
 
+#include "io/counts.hpp"
+
 namespace facezip::raster {
 
-using compress::kTileSide;
 static_assert(kTileSide == 16, "a row of a tile is half a word");
 
 TexelClasses::TexelClasses(int width, int height)
-    : width_(width),
-      height_(height),
-      tile_columns_((width + kTileSide - 1) / kTileSide),
-      words_(static_cast<std::size_t>(tile_columns_) * static_cast<std::size_t>(height), 0) {}
+    : width_(width), height_(height), tile_columns_(tilesAlong(width)), words_(toSize(tile_columns_, height), 0) {}
 
 TexelClasses::TexelClasses(const UvRaster& raster) : TexelClasses(raster.width(), raster.height()) {
   // Few enough rows for little memory, enough that the gutter above and below them costs no more than they do.
@@ -30,7 +28,7 @@ TexelClasses TexelClasses::coveredRows(const UvRaster& raster, int begin, int en
 }
 
 void TexelClasses::set(const std::vector<TexelSample>& samples, int y) {
-  const auto width = static_cast<std::size_t>(width_);
+  const auto width = toSize(width_);
   tbb::parallel_for(std::size_t{0}, samples.size() / width, [&](std::size_t row) {
     const TexelSample* texels = samples.data() + row * width;
     for (int x = 0; x < width_; ++x) {

@@ -6,7 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "compress/bands/tile_band.hpp"
+#include "io/counts.hpp"
+#include "raster/tiles.hpp"
 #include "raster/uv_raster.hpp"
 
 namespace facezip::raster {
@@ -32,9 +33,7 @@ class TexelClasses {
   TexelClasses(int width, int height);
   /// Takes over whole rows of samples, the first as row `y`.
   void set(const std::vector<TexelSample>& samples, int y);
-  std::size_t index(int tile_x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(tile_columns_) + static_cast<std::size_t>(tile_x);
-  }
+  std::size_t index(int tile_x, int y) const { return toSize(y, tile_columns_) + toSize(tile_x); }
 
   int width_;
   int height_;

@@ -9,13 +9,10 @@
 #include <set>
 #include <utility>
 
+#include "io/counts.hpp"
+
 namespace facezip::raster {
 namespace {
-
-using compress::kTileSide;
-using compress::kTileTexels;
-using compress::TileMasks;
-using compress::TilePosition;
 
 /// Appends the tiles of `part` to `whole`.
 void append(TileMasks& whole, const TileMasks& part) {
@@ -55,7 +52,7 @@ void forEachTile(const TexelClasses& classes, int begin, int end, int tile_y, co
 /// Cuts samples into tiles, a row of tiles at a time on several threads: fill(row of tiles, tiles to append to).
 template <typename Fill>
 TileMasks tilesByRows(int rows, const Fill& fill) {
-  std::vector<TileMasks> parts(static_cast<std::size_t>((rows + kTileSide - 1) / kTileSide));
+  std::vector<TileMasks> parts(toSize(tilesAlong(rows)));
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t y) {
     parts[y].mask_begin.push_back(0);
     fill(static_cast<int>(y), parts[y]);
@@ -74,26 +71,24 @@ TexelMasks::TexelMasks(const geometry::TriangleMesh& mesh, const geometry::Regio
   assert(masks.vertexCount() == region.vertexCount());
 }
 
-TexelMasks::Cursor::Cursor(const TexelMasks& masks)
-    : masks_(masks), place_(static_cast<std::size_t>(masks.maskCount()), -1) {}
+TexelMasks::Cursor::Cursor(const TexelMasks& masks) : masks_(masks), place_(toSize(masks.maskCount()), -1) {}
 
 void TexelMasks::Cursor::moveTo(int triangle) {
   triangle_ = triangle;
-  for (const Corners& old : corners_) place_[static_cast<std::size_t>(old.mask)] = -1;
+  for (const Corners& old : corners_) place_[toSize(old.mask)] = -1;
   corners_.clear();
   const geometry::MaskWeights& masks = masks_.masks_;
   for (int corner = 0; corner < 3; ++corner) {
-    const auto mesh_vertex = static_cast<std::size_t>(masks_.mesh_.triangles(triangle, corner));
-    const auto vertex = static_cast<std::size_t>(masks_.region_.region_vertices[mesh_vertex]);
+    const auto mesh_vertex = toSize(masks_.mesh_.triangles(triangle, corner));
+    const auto vertex = toSize(masks_.region_.region_vertices[mesh_vertex]);
     for (int e = masks.row_begin[vertex]; e < masks.row_begin[vertex + 1]; ++e) {
-      const int mask = masks.mask_index[static_cast<std::size_t>(e)];
-      int& place = place_[static_cast<std::size_t>(mask)];
+      const int mask = masks.mask_index[toSize(e)];
+      int& place = place_[toSize(mask)];
       if (place < 0) {
         place = static_cast<int>(corners_.size());
         corners_.push_back({mask, {}});
       }
-      corners_[static_cast<std::size_t>(place)].weights[static_cast<std::size_t>(corner)] =
-          masks.weight[static_cast<std::size_t>(e)];
+      corners_[toSize(place)].weights[toSize(corner)] = masks.weight[toSize(e)];
     }
   }
 }
@@ -104,17 +99,16 @@ void TexelMasks::addTile(const std::vector<TexelSample>& samples, int width, int
   const int y_end = std::min(rows, (position.y + 1) * kTileSide);
   // scratch holds [mask][256] for every mask and is all zero between calls.
   std::vector<int> active;
-  std::vector<char> is_active(static_cast<std::size_t>(masks_.mask_count), 0);
+  std::vector<char> is_active(toSize(masks_.mask_count), 0);
   std::array<float, kTileTexels> texel_weights{};
   for (int y = position.y * kTileSide; y < y_end; ++y) {
     for (int x = position.x * kTileSide; x < x_end; ++x) {
-      const TexelSample& sample =
-          samples[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+      const TexelSample& sample = samples[toSize(y, width) + toSize(x)];
       if (sample.triangle < 0) continue;
-      const auto t = static_cast<std::size_t>((y - position.y * kTileSide) * kTileSide + (x - position.x * kTileSide));
+      const auto t = toSize((y - position.y * kTileSide) * kTileSide + (x - position.x * kTileSide));
       if (sample.kind == TexelSample::Kind::kCovered) texel_weights[t] = 1.0f;
       for (const Corners& corners : cursor.at(sample.triangle)) {
-        const auto mask = static_cast<std::size_t>(corners.mask);
+        const auto mask = toSize(corners.mask);
         const float value = corners.at(sample);
         scratch[mask * kTileTexels + t] = value;
         if (value > 0.0f && !is_active[mask]) {
@@ -137,26 +131,26 @@ void TexelMasks::addTile(const std::vector<TexelSample>& samples, int width, int
   out.texel_weights.insert(out.texel_weights.end(), texel_weights.begin(), texel_weights.end());
 }
 
-compress::TileMasks TexelMasks::tiles(const UvRaster& raster, int begin, int end, Texels texels) const {
+TileMasks TexelMasks::tiles(const UvRaster& raster, int begin, int end, Texels texels) const {
   const std::vector<TexelSample> samples =
       texels == Texels::kCovered ? raster.coveredRows(begin, end) : raster.rows(begin, end);
-  const int tile_columns = (raster.width() + kTileSide - 1) / kTileSide;
+  const int tile_columns = tilesAlong(raster.width());
   return tilesByRows(end - begin, [&](int y, TileMasks& out) {
     Cursor cursor(*this);
-    std::vector<float> scratch(static_cast<std::size_t>(masks_.mask_count) * kTileTexels, 0.0f);
+    std::vector<float> scratch(toSize(masks_.mask_count) * kTileTexels, 0.0f);
     for (int x = 0; x < tile_columns; ++x) addTile(samples, raster.width(), end - begin, {x, y}, cursor, scratch, out);
   });
 }
 
-std::vector<compress::MaskPair> TexelMasks::overlappingPairs() const {
+std::vector<MaskPair> TexelMasks::overlappingPairs() const {
   std::set<std::pair<int, int>> pairs;
   std::vector<int> active;
   for (const auto& triangle : region_.triangles.rowwise()) {
     active.clear();
     for (const int vertex : triangle) {
       const auto entries = masks_.mask_index.begin();
-      active.insert(active.end(), entries + masks_.row_begin[static_cast<std::size_t>(vertex)],
-                    entries + masks_.row_begin[static_cast<std::size_t>(vertex) + 1]);
+      active.insert(active.end(), entries + masks_.row_begin[toSize(vertex)],
+                    entries + masks_.row_begin[toSize(vertex) + 1]);
     }
     std::sort(active.begin(), active.end());
     active.erase(std::unique(active.begin(), active.end()), active.end());
@@ -164,12 +158,12 @@ std::vector<compress::MaskPair> TexelMasks::overlappingPairs() const {
       for (std::size_t b = a + 1; b < active.size(); ++b) pairs.emplace(active[a], active[b]);
     }
   }
-  std::vector<compress::MaskPair> result;
+  std::vector<MaskPair> result;
   for (const auto& [k, l] : pairs) result.push_back({k, l});
   return result;
 }
 
-compress::TileMasks coverageTiles(const UvRaster& raster, int begin, int end) {
+TileMasks coverageTiles(const UvRaster& raster, int begin, int end) {
   const TexelClasses classes = TexelClasses::coveredRows(raster, begin, end);
   return tilesByRows(end - begin, [&](int tile_y, TileMasks& out) {
     forEachTile(classes, 0, end - begin, tile_y, [&](TilePosition tile, const auto&, const auto& covered) {
@@ -180,7 +174,7 @@ compress::TileMasks coverageTiles(const UvRaster& raster, int begin, int end) {
   });
 }
 
-compress::TileMasks activeTiles(const TexelClasses& classes, int begin, int end) {
+TileMasks activeTiles(const TexelClasses& classes, int begin, int end) {
   return tilesByRows(end - begin, [&](int tile_y, TileMasks& out) {
     forEachTile(classes, begin, end, tile_y, [&](TilePosition tile, const auto& active, const auto& covered) {
       out.tiles.push_back(tile);

@@ -6,11 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "compress/bands/tile_band.hpp"
-#include "compress/search/gram_matrices.hpp"
 #include "facezip/geometry/face_region.hpp"
 #include "facezip/geometry/mask_weights.hpp"
 #include "raster/texel_classes.hpp"
+#include "raster/tiles.hpp"
 #include "raster/uv_raster.hpp"
 
 namespace facezip::raster {
@@ -29,11 +28,11 @@ class TexelMasks {
   enum class Texels { kCovered, kCoveredAndGutter };
   /// Cuts rows [begin, end) of the raster into tiles and gives each the masks that are above zero at one of its texels.
   /// Tiles without such texels are left out; masks are 0 at all others.
-  compress::TileMasks tiles(const UvRaster& raster, int begin, int end, Texels texels) const;
+  TileMasks tiles(const UvRaster& raster, int begin, int end, Texels texels) const;
 
   /// Pairs of masks that are both above zero somewhere inside a triangle, rising by (k, l): of all others the products
   /// vanish at every texel.
-  std::vector<compress::MaskPair> overlappingPairs() const;
+  std::vector<MaskPair> overlappingPairs() const;
 
   /// A mask inside a triangle.
   struct Corners {
@@ -66,8 +65,8 @@ class TexelMasks {
   };
 
  private:
-  void addTile(const std::vector<TexelSample>& samples, int width, int rows, compress::TilePosition position,
-               Cursor& cursor, std::vector<float>& scratch, compress::TileMasks& out) const;
+  void addTile(const std::vector<TexelSample>& samples, int width, int rows, TilePosition position, Cursor& cursor,
+               std::vector<float>& scratch, TileMasks& out) const;
 
   const geometry::TriangleMesh& mesh_;
   const geometry::RegionMesh& region_;
@@ -76,10 +75,10 @@ class TexelMasks {
 
 /// The tiles of rows [begin, end) that hold covered texels, with texel weights and no masks: what sums over the face
 /// need.
-compress::TileMasks coverageTiles(const UvRaster& raster, int begin, int end);
+TileMasks coverageTiles(const UvRaster& raster, int begin, int end);
 
 /// The tiles of rows [begin, end) that hold covered or gutter texels, each with one mask (index 0): 1 at those texels,
 /// 0 elsewhere. Texel weights are 1 at the covered ones.
-compress::TileMasks activeTiles(const TexelClasses& classes, int begin, int end);
+TileMasks activeTiles(const TexelClasses& classes, int begin, int end);
 
 }  // namespace facezip::raster

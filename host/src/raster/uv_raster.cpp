@@ -7,6 +7,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "io/counts.hpp"
 #include "raster/gutter.hpp"
 
 namespace facezip::raster {
@@ -20,8 +21,8 @@ constexpr double kEdgeSlack = 1e-9;
 UvRaster::UvRaster(const geometry::TriangleMesh& mesh, std::span<const int> region, int width, int height, int gutter)
     : width_(width), height_(height), gutter_(gutter) {
   assert(mesh.uv_triangles.rows() == mesh.triangles.rows());
-  std::vector<bool> in_region(static_cast<std::size_t>(mesh.triangles.rows()), false);
-  for (const int triangle : region) in_region[static_cast<std::size_t>(triangle)] = true;
+  std::vector<bool> in_region(toSize(mesh.triangles.rows()), false);
+  for (const int triangle : region) in_region[toSize(triangle)] = true;
   for (Eigen::Index t = 0; t < mesh.uv_triangles.rows(); ++t) {
     UvTriangle out{};
     for (int corner = 0; corner < 3; ++corner) {
@@ -33,7 +34,7 @@ UvRaster::UvRaster(const geometry::TriangleMesh& mesh, std::span<const int> regi
     if (area2 == 0.0) continue;  // covers no texel
     out.inverse_area2 = 1.0 / area2;
     out.index = static_cast<std::int32_t>(t);
-    out.in_region = in_region[static_cast<std::size_t>(t)];
+    out.in_region = in_region[toSize(t)];
     triangles_.push_back(out);
   }
   const auto firstRow = [](const UvTriangle& t) {
@@ -53,7 +54,7 @@ void UvRaster::fillTriangle(const UvTriangle& t, int begin, int end, int first, 
   const int x_begin = std::max(0, static_cast<int>(std::ceil(std::min({t.x[0], t.x[1], t.x[2]}) - kEdgeSlack)));
   const int x_end = std::min(width_, static_cast<int>(std::floor(std::max({t.x[0], t.x[1], t.x[2]}) + kEdgeSlack)) + 1);
   for (int y = y_begin; y < y_end; ++y) {
-    TexelSample* row = samples.data() + static_cast<std::size_t>(y - first) * static_cast<std::size_t>(width_);
+    TexelSample* row = samples.data() + toSize(y - first, width_);
     for (int x = x_begin; x < x_end; ++x) {
       const double b1 = ((x - t.x[0]) * (t.y[2] - t.y[0]) - (t.x[2] - t.x[0]) * (y - t.y[0])) * t.inverse_area2;
       const double b2 = ((t.x[1] - t.x[0]) * (y - t.y[0]) - (x - t.x[0]) * (t.y[1] - t.y[0])) * t.inverse_area2;
@@ -74,14 +75,13 @@ void UvRaster::fillTriangle(const UvTriangle& t, int begin, int end, int first, 
 }
 
 std::vector<TexelSample> UvRaster::coveredRows(int begin, int end) const {
-  std::vector<TexelSample> samples(static_cast<std::size_t>(end - begin) * static_cast<std::size_t>(width_));
+  std::vector<TexelSample> samples(toSize(end - begin, width_));
   constexpr int kRowsAtOnce = 32;
   tbb::parallel_for(tbb::blocked_range<int>(begin, end, kRowsAtOnce), [&](const tbb::blocked_range<int>& rows) {
     const auto first = std::lower_bound(first_row_.begin(), first_row_.end(), rows.begin() - tallest_);
     const auto last = std::lower_bound(first_row_.begin(), first_row_.end(), rows.end());
     for (auto it = first; it < last; ++it) {
-      fillTriangle(triangles_[static_cast<std::size_t>(it - first_row_.begin())], rows.begin(), rows.end(), begin,
-                   samples);
+      fillTriangle(triangles_[toSize(it - first_row_.begin())], rows.begin(), rows.end(), begin, samples);
     }
   });
   return samples;

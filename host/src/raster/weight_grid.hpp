@@ -1,26 +1,42 @@
-// weight_grid.hpp - masks at the cells of the weight map, which is a fraction of the texture's size.
+// weight_grid.hpp - the grid of cells that weight maps live on, a fraction of a texture's size.
+// Cell q has its centre at texel (q + 1/2) s - 1/2, s texels to a cell along each axis; a texel interpolates linearly
+// between the centres around it, and beyond the outer centres the edge repeats (kernels/cl/weight_grid.h, FaceZip Eq.
+// 8).
 #pragma once
 
-#include <cstdint>
-#include <vector>
+#include <algorithm>
 
-#include "compress/search/weight_map.hpp"
-#include "raster/texel_masks.hpp"
-#include "raster/uv_raster.hpp"
+#include "io/counts.hpp"
 
 namespace facezip::raster {
 
-/// Masks at every cell of the weight grid.
-struct WeightGrid {
-  int width = 0;                      ///< cells
-  int height = 0;                     ///< cells
-  compress::CellMasks cells;          ///< width x height of them, row-major; a cell's weights sum to 1
-  std::vector<std::uint8_t> covered;  ///< of every cell: 1 if it has a covered texel
+/// Rows [begin, end) of cells.
+struct CellRows {
+  int begin = 0;
+  int end = 0;
+
+  int count() const { return end - begin; }
 };
 
-/// Averages the masks over the covered texels of each cell of scale x scale texels. Cells without covered texels copy
-/// the nearest cell that has some, so that no bilinear footprint and no mip level of the weights reaches an empty cell.
-/// Memory: one sparse row per cell, 1 / scale^2 of the texels. The raster is read in bands.
-WeightGrid makeWeightGrid(const TexelMasks& masks, const UvRaster& raster, int scale);
+/// Maps of several sizes share a grid, each with a scale of its own. Cells are counted row by row.
+struct WeightGrid {
+  int columns = 0;  ///< cells
+  int rows = 0;     ///< cells
+
+  /// The grid over an image of width x height texels with `scale` texels to a cell; the last cells may hang over.
+  static WeightGrid over(int width, int height, int scale) { return {divideUp(width, scale), divideUp(height, scale)}; }
+
+  std::size_t cellCount() const { return toSize(rows, columns); }
+  std::size_t cell(int row, int column) const { return Layout(rows, columns)(row, column); }
+};
+
+/// Rows of cells that texel rows [begin, end) interpolate between; one at least, whatever the rows.
+/// scale  texels to a cell; grid_rows  of the whole grid
+inline CellRows cellRowsOf(int begin, int end, int scale, int grid_rows) {
+  // 2 s times the position of texel row y in cells is the integer 2 y + 1 - s: exact for every s and y.
+  const auto row_above = [scale](int y) { return divideDown(2 * y + 1 - scale, 2 * scale); };
+  const int first = std::clamp(row_above(begin), 0, grid_rows - 1);
+  return {first, std::clamp(row_above(std::max(begin, end - 1)) + 2, first + 1, grid_rows)};
+}
 
 }  // namespace facezip::raster

@@ -1,5 +1,7 @@
 #include "compress/bands/band_differences.hpp"
 
+#include "io/counts.hpp"
+
 namespace facezip::compress {
 namespace {
 
@@ -7,11 +9,11 @@ template <typename Sample>
 void gather(std::span<const std::byte> samples, const BandShape& shape, std::span<const std::uint32_t> texels,
             Eigen::MatrixXf& differences) {
   const auto* neutral = reinterpret_cast<const Sample*>(samples.data());
-  const auto channels = static_cast<std::size_t>(shape.channels);
-  const std::size_t image = static_cast<std::size_t>(shape.rows) * static_cast<std::size_t>(shape.width) * channels;
+  const auto channels = toSize(shape.channels);
+  const std::size_t image = toSize(shape.rows, shape.width) * channels;
   const float unit = image::unit255(shape.sample_type);
   for (int n = 0; n < shape.expressions; ++n) {
-    const Sample* expression = neutral + static_cast<std::size_t>(n + 1) * image;
+    const Sample* expression = neutral + toSize(n + 1) * image;
     float* out = differences.col(n).data();
     for (const std::uint32_t texel : texels) {
       for (std::size_t at = texel * channels; at < (texel + std::size_t{1}) * channels; ++at) {

@@ -2,6 +2,8 @@
 
 #include <cassert>
 
+#include "io/counts.hpp"
+
 namespace facezip::compress {
 namespace {
 
@@ -46,8 +48,8 @@ void toValues(std::span<const std::byte> samples, image::SampleType type, std::s
 }
 
 std::span<const std::byte> bandImage(std::span<const std::byte> samples, const BandShape& shape, int image) {
-  const std::size_t bytes = samples.size() / static_cast<std::size_t>(shape.expressions + 1);
-  return samples.subspan(static_cast<std::size_t>(image) * bytes, bytes);
+  const std::size_t bytes = samples.size() / toSize(shape.expressions + 1);
+  return samples.subspan(toSize(image) * bytes, bytes);
 }
 
 }  // namespace facezip::compress

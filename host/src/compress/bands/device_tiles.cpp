@@ -2,6 +2,8 @@
 
 #include <cassert>
 
+#include "io/counts.hpp"
+
 namespace facezip::compress {
 
 DeviceTiles::DeviceTiles(device::DeviceContext& context)
@@ -20,17 +22,16 @@ void DeviceTiles::upload(const TileMasks& masks) {
   begin_ = masks.mask_begin;
   index_ = masks.mask_index;
   static_assert(sizeof(TilePosition) == 2 * sizeof(cl_int));
-  positions_.upload(std::span<const TilePosition>(masks.tiles));
-  mask_begin_.upload(std::span<const int>(masks.mask_begin));
-  mask_index_.upload(std::span<const int>(masks.mask_index));
-  mask_weights_.upload(std::span<const float>(masks.mask_weights));
-  texel_weights_.upload(std::span<const float>(masks.texel_weights));
+  positions_.upload(masks.tiles);
+  mask_begin_.upload(masks.mask_begin);
+  mask_index_.upload(masks.mask_index);
+  mask_weights_.upload(masks.mask_weights);
+  texel_weights_.upload(masks.texel_weights);
 }
 
 std::span<const int> DeviceTiles::masksOf(std::size_t t) const {
   assert(t < tile_count_);
-  return std::span<const int>(index_).subspan(static_cast<std::size_t>(begin_[t]),
-                                              static_cast<std::size_t>(begin_[t + 1] - begin_[t]));
+  return std::span<const int>(index_).subspan(toSize(begin_[t]), toSize(begin_[t + 1] - begin_[t]));
 }
 
 }  // namespace facezip::compress

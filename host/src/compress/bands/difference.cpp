@@ -5,6 +5,7 @@
 #include <cassert>
 
 #include "device/pooled_buffer.hpp"
+#include "io/counts.hpp"
 
 namespace facezip::compress {
 namespace {
@@ -23,11 +24,26 @@ std::string sampleDefines(image::SampleType type) {
   return fmt::format("-D SAMPLE_T=float -D SAMPLE_UNIT={:.1f}f", image::unit255(type));
 }
 
+cl::Event launchDifference(device::DeviceContext& context, const DeviceTiles& tiles, const BandShape& shape,
+                           const cl::Buffer& samples, const cl::Buffer& neutral, const cl::Buffer& differences) {
+  assert(shape.expressions >= 1);
+  if (tiles.tileCount() == 0) return {};
+  device::requireBytes(context, samples, shape.sampleBytes(), "samples of a band");
+  device::requireBytes(context, differences, differenceBufferBytes(shape, tiles.tileCount()), "differences of a band");
+  const cl::Kernel kernel =
+      context.kernel("difference.cl", "difference",
+                     fmt::format("{} {}{}", differenceDefines(shape), sampleDefines(shape.sample_type),
+                                 shape.neutral_decoded ? " -D NEUTRAL_DECODED" : ""));
+  return context.launch(kernel,
+                        device::WorkItems(kTileSide, tiles.tileCount(), shape.expressions)
+                            .inGroupsOf(context.workGroupSize(kernel, kTileSide), 1, 1),
+                        tiles.positions(), samples, neutral, differences, shape.width, shape.rows);
+}
+
 }  // namespace
 
 std::size_t differenceBufferBytes(const BandShape& shape, std::size_t tile_count) {
-  return tile_count * static_cast<std::size_t>(shape.expressions) * static_cast<std::size_t>(shape.channels) *
-         kTileTexels * shape.differenceBytes();
+  return toSize(tile_count, shape.expressions, shape.channels, kTileTexels) * shape.differenceBytes();
 }
 
 std::string differenceDefines(const BandShape& shape) {
@@ -37,20 +53,15 @@ std::string differenceDefines(const BandShape& shape) {
 
 cl::Event computeDifferences(device::DeviceContext& context, const DeviceTiles& tiles, const BandShape& shape,
                              const cl::Buffer& samples, const cl::Buffer& differences) {
-  assert(shape.expressions >= 1);
-  if (tiles.tileCount() == 0) return {};
-  device::requireBytes(context, samples, shape.sampleBytes(), "samples of a band");
-  device::requireBytes(context, differences, differenceBufferBytes(shape, tiles.tileCount()), "differences of a band");
-  cl::Kernel kernel =
-      context.kernel("difference.cl", "difference", differenceDefines(shape) + " " + sampleDefines(shape.sample_type));
-  kernel.setArg(0, tiles.positions());
-  kernel.setArg(1, samples);
-  kernel.setArg(2, differences);
-  kernel.setArg(3, static_cast<cl_int>(shape.width));
-  kernel.setArg(4, static_cast<cl_int>(shape.rows));
-  const cl::NDRange local(context.workGroupSize(kernel, kTileSide), 1, 1);
-  return context.run(kernel, cl::NDRange(kTileSide, tiles.tileCount(), static_cast<std::size_t>(shape.expressions)),
-                     local);
+  assert(!shape.neutral_decoded);
+  return launchDifference(context, tiles, shape, samples, samples, differences);
+}
+
+cl::Event computeDifferences(device::DeviceContext& context, const DeviceTiles& tiles, const BandShape& shape,
+                             const cl::Buffer& samples, const cl::Buffer& neutral, const cl::Buffer& differences) {
+  assert(shape.neutral_decoded);
+  if (tiles.tileCount() > 0) device::requireBytes(context, neutral, shape.neutralBytes(), "decoded neutral of a band");
+  return launchDifference(context, tiles, shape, samples, neutral, differences);
 }
 
 }  // namespace facezip::compress

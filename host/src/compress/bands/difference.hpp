@@ -23,6 +23,11 @@ std::size_t differenceBufferBytes(const BandShape& shape, std::size_t tile_count
 cl::Event computeDifferences(device::DeviceContext& context, const DeviceTiles& tiles, const BandShape& shape,
                              const cl::Buffer& samples, const cl::Buffer& differences);
 
+/// The same to what a coded neutral decodes to. shape.neutral_decoded is set; image 0 of the samples is not looked at.
+/// neutral  shape.neutralBytes(): [row][column][channel] float in units of 1/255 of full scale
+cl::Event computeDifferences(device::DeviceContext& context, const DeviceTiles& tiles, const BandShape& shape,
+                             const cl::Buffer& samples, const cl::Buffer& neutral, const cl::Buffer& differences);
+
 /// "-D DIFF_T=... -D CHANNELS=..." for the kernels that read differences of `shape`.
 std::string differenceDefines(const BandShape& shape);
 

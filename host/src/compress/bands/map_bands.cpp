@@ -1,6 +1,7 @@
 #include "compress/bands/map_bands.hpp"
 
 #include "compress/bands/difference.hpp"
+#include "io/counts.hpp"
 
 namespace facezip::compress {
 
@@ -17,7 +18,7 @@ BandShape bandShape(const image::SampleBands& samples, int rows) {
 
 void forEachMapBand(image::SampleBands& samples, int band_rows, BandBuffers& buffers, const MakeTiles& make_tiles,
                     std::string_view stage, Progress& progress, const std::function<void(const MapBand&)>& visit) {
-  progress.stage(stage, static_cast<std::size_t>(samples.shape().height));
+  progress.stage(stage, toSize(samples.shape().height));
   TileMasks tiles[2];  // of the band at work and the one that is being read
   const auto tilesOf = [&](int begin) -> TileMasks& { return tiles[begin / band_rows % 2]; };
   const auto prepare = [&](int begin, int end) { tilesOf(begin) = make_tiles(begin, end); };
@@ -30,7 +31,7 @@ void forEachMapBand(image::SampleBands& samples, int band_rows, BandBuffers& buf
     computeDifferences(buffers.context, buffers.tiles, shape, raw, differences);
     visit({band.begin, band.end, shape, band.samples, masks, buffers.tiles, differences});
     buffers.context.finish();  // the next band reuses the buffers
-    progress.advance(static_cast<std::size_t>(band.end));
+    progress.advance(toSize(band.end));
   };
   samples.forEachBand(band_rows, progress, work, prepare);
 }

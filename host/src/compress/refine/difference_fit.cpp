@@ -6,12 +6,12 @@
 #include <cmath>
 
 #include "compress/bands/difference.hpp"
+#include "io/counts.hpp"
 
 namespace facezip::compress {
 
-std::string gridDefines(const BandShape& shape, const WeightSpace& space, int weight_scale) {
-  return fmt::format("{} -D TEXTURES={} -D EXPRESSIONS={} -D EXPRESSION_LANES={} -D WEIGHT_SCALE={}",
-                     differenceDefines(shape), space.textures, space.expressions, space.lanes(), weight_scale);
+int differenceFactorPlanes(const WeightSpace& space, int channels) {
+  return FACEZIP_FACTOR_PLANES(space.textures, channels);
 }
 
 DifferenceFit::DifferenceFit(device::DeviceContext& context, const WeightSpace& space, device::KernelVariant variant)
@@ -19,51 +19,53 @@ DifferenceFit::DifferenceFit(device::DeviceContext& context, const WeightSpace& 
       space_(space),
       gpu_(context.resolve(variant) == device::KernelVariant::kGpu),
       textures_(context, "difference textures"),
+      factors_(context, "factors of the difference textures"),
       errors_(context, "errors of the difference textures"),
       encoding_(context, "encoding of the difference textures", CL_MEM_READ_ONLY) {}
 
 const cl::Buffer& DifferenceFit::compute(const GridBand& band, const WeightWindow& window, float ridge) {
-  return run(band, window, ridge, 0);
+  return run(band, window, ridge, "");
 }
 
 const cl::Buffer& DifferenceFit::computeRounded(const GridBand& band, const WeightWindow& window, float ridge,
                                                 std::span<const TextureEncoding> encoding, int bits) {
-  assert(encoding.size() == static_cast<std::size_t>(space_.textures * band.shape.channels));
+  assert(encoding.size() == toSize(space_.textures * band.shape.channels));
   std::vector<cl_float2> codes;
   for (const TextureEncoding& e : encoding) {
     codes.push_back({{e.scale, e.scale > 0.0f ? std::round(-e.offset / e.scale) : 0.0f}});
   }
-  encoding_.upload(std::span<const cl_float2>(codes));
-  return run(band, window, ridge, (1 << bits) - 1);
+  encoding_.upload(codes);
+  return run(band, window, ridge, fmt::format(" -D CODES={}", (1 << bits) - 1));
 }
 
-const cl::Buffer& DifferenceFit::run(const GridBand& band, const WeightWindow& window, float ridge, int largest_code) {
+const cl::Buffer& DifferenceFit::computeFactors(const GridBand& band, const WeightWindow& window, float ridge) {
+  return run(band, window, ridge, " -D FACTORS");
+}
+
+const cl::Buffer& DifferenceFit::run(const GridBand& band, const WeightWindow& window, float ridge,
+                                     const std::string& form) {
   assert(band.shape.expressions == space_.expressions && ridge > 0.0f);
   tile_count_ = band.tiles.tileCount();
   const std::size_t items = gpu_ ? kTileTexels : 1;  // of a tile
-  textures_.reserve(tile_count_ * static_cast<std::size_t>(space_.textures * band.shape.channels) * kTileTexels *
-                    sizeof(float));
+  const bool factors = form.find("FACTORS") != std::string::npos;
+  const int planes =
+      factors ? differenceFactorPlanes(space_, band.shape.channels) : space_.textures * band.shape.channels;
+  device::PooledBuffer& output = factors ? factors_ : textures_;
+  output.reserve(toSize(tile_count_, planes, kTileTexels) * sizeof(float));
   errors_.reserve(tile_count_ * items * sizeof(cl_float2));
   encoding_.reserve(sizeof(cl_float2));  // a kernel that doesn't round is given a buffer all the same
-  if (tile_count_ == 0) return textures_.buffer();
+  if (tile_count_ == 0) return output.buffer();
   device::requireBytes(context_, band.differences, differenceBufferBytes(band.shape, tile_count_),
                        "differences of a band");
-  std::string defines = fmt::format("{} -D LANES={} -D ROWS={}", gridDefines(band.shape, space_, band.weight_scale),
-                                    gpu_ ? 1 : kTileSide, gpu_ ? 1 : kTileSide);
-  if (largest_code > 0) defines += fmt::format(" -D CODES={}", largest_code);
-  cl::Kernel kernel = context_.kernel("difference_fit.cl", "difference_fit", defines);
-  const cl::Buffer* buffers[] = {&band.tiles.positions(), &band.tiles.texelWeights(), &band.tiles.maskWeights(),
-                                 &band.differences,       &window.weightsBuffer(),    &encoding_.buffer(),
-                                 &textures_.buffer(),     &errors_.buffer()};
-  cl_uint argument = 0;
-  for (const cl::Buffer* buffer : buffers) kernel.setArg(argument++, *buffer);
-  kernel.setArg(argument++, static_cast<cl_int>(band.first_row));
-  kernel.setArg(argument++, static_cast<cl_int>(window.rows().begin));
-  kernel.setArg(argument++, static_cast<cl_int>(space_.columns));
-  kernel.setArg(argument++, static_cast<cl_int>(space_.rows));
-  kernel.setArg(argument++, ridge);
-  context_.run(kernel, cl::NDRange(items, tile_count_), cl::NDRange(context_.workGroupSize(kernel, items), 1));
-  return textures_.buffer();
+  const std::string defines =
+      fmt::format("{} -D LANES={} -D ROWS={}{}", gridDefines(band.shape, space_, band.weight_scale),
+                  gpu_ ? 1 : kTileSide, gpu_ ? 1 : kTileSide, form);
+  const cl::Kernel kernel = context_.kernel("difference_fit.cl", "difference_fit", defines);
+  context_.launch(kernel, device::WorkItems(items, tile_count_).inGroupsOf(context_.workGroupSize(kernel, items), 1),
+                  band.tiles.positions(), band.tiles.texelWeights(), band.tiles.maskWeights(), band.differences,
+                  window.weightsBuffer(), encoding_, output, errors_, band.first_row, window.rows().begin,
+                  space_.columns, space_.rows, ridge);
+  return output.buffer();
 }
 
 std::vector<FitError> DifferenceFit::errors() {

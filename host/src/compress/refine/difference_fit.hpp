@@ -5,31 +5,25 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
-#include "compress/bands/device_tiles.hpp"
-#include "compress/bands/tile_band.hpp"
 #include "compress/codes/texture_encoding.hpp"
+#include "compress/refine/grid_band.hpp"
 #include "compress/refine/weight_window.hpp"
 #include "device/device_context.hpp"
 #include "device/pooled_buffer.hpp"
 
 namespace facezip::compress {
 
-/// A band of one map on the device, and where it lies on the weight grid. References must outlive what takes it.
-struct GridBand {
-  const DeviceTiles& tiles;  ///< one mask a tile: above 0 where difference textures are wanted
-  const BandShape& shape;
-  const cl::Buffer& differences;  ///< what computeDifferences() wrote for the same tiles and shape
-  int first_row = 0;              ///< of the band in the image
-  int weight_scale = 0;           ///< texels of this map per cell, 1 to 64
-};
-
 /// Squared error that is left in one tile, in (1/255)^2, summed over expressions and channels.
 struct FitError {
   double weighted = 0.0;  ///< over the covered texels, each times its texel weight
   double plain = 0.0;     ///< each counted once
 };
+
+/// Numbers of a texel's factored system.
+int differenceFactorPlanes(const WeightSpace& space, int channels);
 
 class DifferenceFit {
  public:
@@ -47,24 +41,26 @@ class DifferenceFit {
   const cl::Buffer& computeRounded(const GridBand& band, const WeightWindow& window, float ridge,
                                    std::span<const TextureEncoding> encoding, int bits);
 
+  /// The systems of the band's texels, factored and not solved, for textures that are coded one after the other
+  /// (kernels/cl/difference_factors.h): [tile][differenceFactorPlanes()][256] float. Does not wait.
+  const cl::Buffer& computeFactors(const GridBand& band, const WeightWindow& window, float ridge);
+
   const cl::Buffer& textures() const { return textures_.buffer(); }
 
   /// What the last compute() leaves in every tile. Waits.
   std::vector<FitError> errors();
 
  private:
-  const cl::Buffer& run(const GridBand& band, const WeightWindow& window, float ridge, int largest_code);
+  const cl::Buffer& run(const GridBand& band, const WeightWindow& window, float ridge, const std::string& form);
 
   device::DeviceContext& context_;
   WeightSpace space_;
   bool gpu_;
   std::size_t tile_count_ = 0;
   device::PooledBuffer textures_;
+  device::PooledBuffer factors_;
   device::PooledBuffer errors_;
   device::PooledBuffer encoding_;
 };
-
-/// "-D ..." of the kernels that know both texels and the weight grid.
-std::string gridDefines(const BandShape& shape, const WeightSpace& space, int weight_scale);
 
 }  // namespace facezip::compress

@@ -7,12 +7,10 @@
 #include <cassert>
 #include <cstring>
 
+#include "io/counts.hpp"
+
 namespace facezip::compress {
 namespace {
-
-std::size_t cellsOf(const WeightSpace& space) {
-  return static_cast<std::size_t>(space.columns) * static_cast<std::size_t>(space.rows);
-}
 
 /// Finite halves in rising order have rising keys.
 std::uint16_t keyOf(Eigen::half value) {
@@ -28,17 +26,14 @@ float valueOf(std::uint16_t key) {
 }  // namespace
 
 GridWeights::GridWeights(const WeightSpace& space)
-    : space_(space),
-      values_(cellsOf(space) * static_cast<std::size_t>(space.textures) * static_cast<std::size_t>(space.expressions),
-              Eigen::half(0.0f)) {}
+    : space_(space), values_(space.cellCount() * toSize(space.textures, space.expressions), Eigen::half(0.0f)) {}
 
 void GridWeights::store(int begin, int end, std::span<const float> rows) {
-  assert(rows.size() == static_cast<std::size_t>(end - begin) * space_.rowFloats());
+  assert(rows.size() == toSize(end - begin) * space_.rowFloats());
   tbb::parallel_for(begin, end, [&](int row) {
-    const float* in = rows.data() + static_cast<std::size_t>(row - begin) * space_.rowFloats();
+    const float* in = rows.data() + toSize(row - begin) * space_.rowFloats();
     for (int column = 0; column < space_.columns; ++column) {
-      const auto cell =
-          static_cast<std::size_t>(row) * static_cast<std::size_t>(space_.columns) + static_cast<std::size_t>(column);
+      const std::size_t cell = space_.cell(row, column);
       for (int i = 0; i < space_.textures; ++i, in += space_.lanes()) {
         for (int n = 0; n < space_.expressions; ++n) values_[index(cell, i, n)] = Eigen::half(in[n]);
       }
@@ -47,12 +42,11 @@ void GridWeights::store(int begin, int end, std::span<const float> rows) {
 }
 
 void GridWeights::load(int begin, int end, std::span<float> rows) const {
-  assert(rows.size() == static_cast<std::size_t>(end - begin) * space_.rowFloats());
+  assert(rows.size() == toSize(end - begin) * space_.rowFloats());
   tbb::parallel_for(begin, end, [&](int row) {
-    float* out = rows.data() + static_cast<std::size_t>(row - begin) * space_.rowFloats();
+    float* out = rows.data() + toSize(row - begin) * space_.rowFloats();
     for (int column = 0; column < space_.columns; ++column) {
-      const auto cell =
-          static_cast<std::size_t>(row) * static_cast<std::size_t>(space_.columns) + static_cast<std::size_t>(column);
+      const std::size_t cell = space_.cell(row, column);
       for (int i = 0; i < space_.textures; ++i, out += space_.lanes()) {
         for (int n = 0; n < space_.expressions; ++n) out[n] = at(cell, i, n);
         std::fill(out + space_.expressions, out + space_.lanes(), 0.0f);
@@ -79,8 +73,8 @@ std::pair<float, float> GridWeights::rangeOf(int texture, std::span<const std::u
 }
 
 EncodedWeights GridWeights::encode(std::span<const std::uint8_t> used, double clipped) const {
-  assert(used.size() == cellsOf(space_) && clipped >= 0.0 && clipped < 0.5);
-  const auto textures = static_cast<std::size_t>(space_.textures);
+  assert(used.size() == space_.cellCount() && clipped >= 0.0 && clipped < 0.5);
+  const auto textures = toSize(space_.textures);
   std::vector<std::pair<float, float>> ranges(textures);
   tbb::parallel_for(std::size_t{0}, textures,
                     [&](std::size_t i) { ranges[i] = rangeOf(static_cast<int>(i), used, clipped); });
@@ -92,10 +86,10 @@ EncodedWeights GridWeights::encode(std::span<const std::uint8_t> used, double cl
     encoded.offset.push_back(static_cast<double>(low));
     steps.push_back(scale > 0.0f ? 1.0f / scale : 0.0f);
   }
-  const std::size_t cells = cellsOf(space_);
-  encoded.codes.resize(cells * textures * static_cast<std::size_t>(space_.expressions));
+  const std::size_t cells = space_.cellCount();
+  encoded.codes.resize(cells * textures * toSize(space_.expressions));
   tbb::parallel_for(0, space_.expressions, [&](int n) {
-    std::uint8_t* out = encoded.codes.data() + static_cast<std::size_t>(n) * cells * textures;
+    std::uint8_t* out = encoded.codes.data() + toSize(n) * cells * textures;
     for (std::size_t cell = 0; cell < cells; ++cell) {
       for (std::size_t i = 0; i < textures; ++i) {
         const float position = (at(cell, static_cast<int>(i), n) - static_cast<float>(encoded.offset[i])) * steps[i];
@@ -107,15 +101,14 @@ EncodedWeights GridWeights::encode(std::span<const std::uint8_t> used, double cl
 }
 
 void decodeRows(const EncodedWeights& weights, const WeightSpace& space, int begin, int end, std::span<float> rows) {
-  assert(rows.size() == static_cast<std::size_t>(end - begin) * space.rowFloats());
-  const std::size_t cells = cellsOf(space);
-  const auto textures = static_cast<std::size_t>(space.textures);
+  assert(rows.size() == toSize(end - begin) * space.rowFloats());
+  const std::size_t cells = space.cellCount();
+  const auto textures = toSize(space.textures);
   std::fill(rows.begin(), rows.end(), 0.0f);
   tbb::parallel_for(begin, end, [&](int row) {
     for (int n = 0; n < space.expressions; ++n) {
-      float* out = rows.data() + static_cast<std::size_t>(row - begin) * space.rowFloats() + n;
-      const std::size_t first = static_cast<std::size_t>(row) * static_cast<std::size_t>(space.columns);
-      const std::uint8_t* code = weights.codes.data() + (static_cast<std::size_t>(n) * cells + first) * textures;
+      float* out = rows.data() + toSize(row - begin) * space.rowFloats() + n;
+      const std::uint8_t* code = weights.codes.data() + (toSize(n) * cells + space.cell(row, 0)) * textures;
       for (int column = 0; column < space.columns; ++column) {
         for (std::size_t i = 0; i < textures; ++i, out += space.lanes()) {
           *out = static_cast<float>(weights.scale[i]) * static_cast<float>(*code++) +

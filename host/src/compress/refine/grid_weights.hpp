@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compress/refine/weight_window.hpp"
+#include "io/counts.hpp"
 
 namespace facezip::compress {
 
@@ -37,9 +38,7 @@ class GridWeights {
 
  private:
   std::size_t index(std::size_t cell, int texture, int expression) const {
-    return (cell * static_cast<std::size_t>(space_.textures) + static_cast<std::size_t>(texture)) *
-               static_cast<std::size_t>(space_.expressions) +
-           static_cast<std::size_t>(expression);
+    return (cell * toSize(space_.textures) + toSize(texture)) * toSize(space_.expressions) + toSize(expression);
   }
   std::pair<float, float> rangeOf(int texture, std::span<const std::uint8_t> used, double clipped) const;
 

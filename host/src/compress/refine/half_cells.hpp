@@ -5,9 +5,8 @@
 // once.
 #pragma once
 
-#include <vector>
-
-#include "compress/refine/difference_fit.hpp"
+#include "compress/refine/half_cell_fit.hpp"
+#include "compress/refine/half_cell_gram.hpp"
 #include "compress/refine/weight_window.hpp"
 #include "device/device_context.hpp"
 #include "device/pooled_buffer.hpp"
@@ -36,12 +35,9 @@ class HalfCells {
   /// Squared error of the last fit() over the free rows, with the texels' and maps' weights. Waits.
   double error();
 
-  /// What fit() left: [half row][half column][entries] float, half rows from firstHalfRow() on; half_cell_fit.cl.
+  /// What fit() left: [half row][half column][entries] float, half rows from rows().first on; half_cell_fit.cl.
   const cl::Buffer& equations() const { return halves_.buffer(); }
-  int firstHalfRow() const { return first_half_row_; }
-  int halfRows() const { return half_rows_; }
-  /// Half cells in a row of the buffers: those of the grid, rounded up to 16.
-  int halfColumns() const { return 16 * groups_; }
+  const HalfCellRows& rows() const { return rows_; }
 
   /// [half row][group of 16][m (m + 1) / 2 + n][16] float, for tests.
   const cl::Buffer& grams() const { return grams_.buffer(); }
@@ -49,10 +45,8 @@ class HalfCells {
  private:
   device::DeviceContext& context_;
   WeightSpace space_;
-  int groups_;
-  WindowRows rows_;
-  int first_half_row_ = 0;
-  int half_rows_ = 0;
+  WindowRows window_rows_;
+  HalfCellRows rows_;
   bool empty_ = true;
   device::PooledBuffer grams_;
   device::PooledBuffer halves_;

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <future>
 #include <memory>
 #include <numeric>
 
 #include "compress/bands/difference.hpp"
 #include "compress/bands/map_bands.hpp"
-#include "compress/codes/texture_range.hpp"
+#include "compress/codes/difference_texture_range.hpp"
 #include "compress/refine/difference_fit.hpp"
 #include "compress/refine/weight_system.hpp"
 #include "image/sample_window.hpp"
@@ -58,7 +57,7 @@ class MapWindow {
     first_own_tile_ = first_behind(own_begin_);
     end_of_own_tiles_ = first_behind(own_end_);
     tiles_.upload(masks_);
-    tile_at_.upload(std::span<const int>(tileLookup(masks_, shape_)));
+    tile_at_.upload(tileLookup(masks_, shape_));
     const cl::Buffer& raw = samples_.upload(window_.samples());
     differences_.reserve(differenceBufferBytes(shape_, masks_.tiles.size()));
     computeDifferences(context_, tiles_, shape_, raw, differences_.buffer());
@@ -294,15 +293,5 @@ int windowRowStep(std::span<const GridMap> maps) {
 }
 
 int windowHalo(int weight_scale) { return ((weight_scale + 1) / 2 + kTileSide - 1) / kTileSide * kTileSide; }
-
-WindowRows cellRowsOf(int begin, int end, int weight_scale, int grid_rows) {
-  const auto position = [&](int row) { return (static_cast<double>(row) + 0.5) / weight_scale - 0.5; };
-  WindowRows rows;
-  rows.begin = std::clamp(static_cast<int>(std::floor(position(begin))), 0, grid_rows - 1);
-  rows.end =
-      std::clamp(static_cast<int>(std::floor(position(std::max(begin, end - 1)))) + 2, rows.begin + 1, grid_rows);
-  rows.free_begin = rows.free_end = rows.begin;
-  return rows;
-}
 
 }  // namespace facezip::compress

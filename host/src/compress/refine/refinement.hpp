@@ -68,7 +68,4 @@ int windowRowStep(std::span<const GridMap> maps);
 /// Texel rows beside a window's own that its cells reach into, a multiple of 16.
 int windowHalo(int weight_scale);
 
-/// Rows of cells that texel rows [begin, end) interpolate between.
-WindowRows cellRowsOf(int begin, int end, int weight_scale, int grid_rows);
-
 }  // namespace facezip::compress

@@ -6,7 +6,7 @@
 // cent, need no reduction, and lower the objective at every step.
 #pragma once
 
-#include "compress/refine/difference_fit.hpp"
+#include "compress/refine/grid_band.hpp"
 #include "compress/refine/half_cells.hpp"
 #include "compress/refine/weight_window.hpp"
 #include "device/device_context.hpp"
@@ -40,10 +40,14 @@ class WeightSystem {
   /// smoothness, trust  above 0
   void relax(const WeightWindow& window, int sweeps, float smoothness, float trust);
 
-  /// [held rows][columns][entries], for tests; layout in kernels/cl/weight_system.cl.
+  /// [tile][patch of cells][entries], what sumTiles() left, for tests; layout in kernels/cl/weight_system.cl.
+  const cl::Buffer& tileSums() const { return partial_.buffer(); }
+  /// [held rows][columns][entries], for tests.
   const cl::Buffer& equations() const { return system_.buffer(); }
 
  private:
+  void reserve(const WeightWindow& window);
+
   device::DeviceContext& context_;
   WeightSpace space_;
   bool gpu_;
@@ -54,8 +58,5 @@ class WeightSystem {
 
 /// Bytes of partial sums that `add` keeps for a tile.
 std::size_t systemBytesOfTile(const WeightSpace& space, int weight_scale);
-
-/// [tile row][tile column] of the band: index of the tile, -1 where there is none.
-std::vector<int> tileLookup(const TileMasks& tiles, const BandShape& shape);
 
 }  // namespace facezip::compress

@@ -5,10 +5,7 @@
 namespace facezip::compress {
 
 WeightWindow::WeightWindow(device::DeviceContext& context, const WeightSpace& space)
-    : context_(context),
-      space_(space),
-      weights_(context, "grid weights"),
-      start_(context, "grid weights at the start") {
+    : space_(space), weights_(context, "grid weights"), start_(context, "grid weights at the start") {
   assert(space.columns >= 1 && space.rows >= 1 && space.expressions >= 1);
   assert(space.textures >= 1 && space.textures <= 8);
 }
@@ -16,7 +13,7 @@ WeightWindow::WeightWindow(device::DeviceContext& context, const WeightSpace& sp
 void WeightWindow::set(const WindowRows& rows, std::span<const float> weights, std::span<const float> start) {
   assert(0 <= rows.begin && rows.begin <= rows.free_begin && rows.free_begin <= rows.free_end);
   assert(rows.free_end <= rows.end && rows.end <= space_.rows);
-  assert(weights.size() == static_cast<std::size_t>(rows.count()) * space_.rowFloats());
+  assert(weights.size() == toSize(rows.count()) * space_.rowFloats());
   assert(start.size() == weights.size());
   rows_ = rows;
   weights_.upload(weights);
@@ -24,8 +21,8 @@ void WeightWindow::set(const WindowRows& rows, std::span<const float> weights, s
 }
 
 std::vector<float> WeightWindow::weights() const {
-  std::vector<float> values(static_cast<std::size_t>(rows_.count()) * space_.rowFloats());
-  context_.read(weights_.buffer(), values.data(), values.size() * sizeof(float), "grid weights");
+  std::vector<float> values(toSize(rows_.count()) * space_.rowFloats());
+  weights_.read(values);
   return values;
 }
 

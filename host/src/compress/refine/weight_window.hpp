@@ -5,37 +5,39 @@
 #include <span>
 #include <vector>
 
+#include "cl/layout.h"
 #include "device/device_context.hpp"
 #include "device/pooled_buffer.hpp"
+#include "io/counts.hpp"
+#include "raster/weight_grid.hpp"
 
 namespace facezip::compress {
 
-/// The weight maps that are being solved for: what all windows of a compression have in common.
-struct WeightSpace {
-  int columns = 0;      ///< cells in a row of the grid
-  int rows = 0;         ///< rows of the whole grid
+/// The weight maps that are being solved for: a grid with the weights of N expressions for C textures in each cell.
+struct WeightSpace : raster::WeightGrid {
   int textures = 0;     ///< C, 1 to 8
   int expressions = 0;  ///< N
 
   /// N as device buffers have it: a multiple of 16, the rest is 0.
-  std::size_t lanes() const { return device::roundUp(static_cast<std::size_t>(expressions), 16); }
-  std::size_t cellFloats() const { return static_cast<std::size_t>(textures) * lanes(); }
-  std::size_t rowFloats() const { return static_cast<std::size_t>(columns) * cellFloats(); }
+  std::size_t lanes() const { return roundUp(toSize(expressions), FACEZIP_VECTOR); }
+  std::size_t cellFloats() const { return toSize(textures) * lanes(); }
+  std::size_t rowFloats() const { return toSize(columns) * cellFloats(); }
   /// Numbers that the normal equations of a cell take, as kernels/cl/weight_system.cl lays them out.
-  std::size_t systemEntries() const {
-    return device::roundUp(static_cast<std::size_t>(2 * textures * (textures + 1)), 16) + cellFloats();
-  }
+  std::size_t systemEntries() const { return toSize(FACEZIP_CELL_MATRICES(textures)) + cellFloats(); }
 };
 
 /// Rows [begin, end) of the grid are held; the weights of rows [free_begin, free_end) may change.
-struct WindowRows {
-  int begin = 0;
-  int end = 0;
+struct WindowRows : raster::CellRows {
+  WindowRows() = default;
+  WindowRows(int held_begin, int held_end, int first_free, int behind_free)
+      : CellRows{held_begin, held_end}, free_begin(first_free), free_end(behind_free) {}
+  /// None may change.
+  WindowRows(const raster::CellRows& held) : WindowRows(held.begin, held.end, held.begin, held.begin) {}
+
   int free_begin = 0;
   int free_end = 0;
-
-  int count() const { return end - begin; }
 };
+using raster::cellRowsOf;
 
 class WeightWindow {
  public:
@@ -55,7 +57,6 @@ class WeightWindow {
   const cl::Buffer& startBuffer() const { return start_.buffer(); }
 
  private:
-  device::DeviceContext& context_;
   WeightSpace space_;
   WindowRows rows_;
   device::PooledBuffer weights_;

@@ -7,6 +7,8 @@
 #include <span>
 #include <utility>
 
+#include "io/counts.hpp"
+
 namespace facezip::compress {
 namespace {
 
@@ -14,13 +16,13 @@ class Search {
  public:
   Search(const CycleRelaxation& relaxation, double cost_to_beat, std::int64_t max_nodes)
       : relaxation_(relaxation),
-        masks_(static_cast<std::size_t>(relaxation.masks())),
-        order_(static_cast<std::size_t>(relaxation.group().order())),
+        masks_(toSize(relaxation.masks())),
+        order_(toSize(relaxation.group().order())),
         max_nodes_(max_nodes),
         triangles_of_(masks_),
         labels_(masks_, kUnplaced) {
     for (const CycleRelaxation::Triangle& triangle : relaxation.triangles()) {
-      for (const int mask : triangle.masks) triangles_of_[static_cast<std::size_t>(mask)].push_back(&triangle);
+      for (const int mask : triangle.masks) triangles_of_[toSize(mask)].push_back(&triangle);
     }
     for (int pair = 0; pair < static_cast<int>(relaxation.pairs().size()); ++pair) {
       const auto costs = relaxation.pairCosts(pair);
@@ -70,16 +72,15 @@ class Search {
   }
 
   void tryLabels(int mask, double placed_cost, double bound, const std::vector<double>& extra) {
-    const auto row = std::span(extra).subspan(static_cast<std::size_t>(mask) * order_, order_);
+    const auto row = std::span(extra).subspan(toSize(mask) * order_, order_);
     std::vector<int> by_cost(order_);
     std::iota(by_cost.begin(), by_cost.end(), 0);
-    std::stable_sort(by_cost.begin(), by_cost.end(),
-                     [&](int a, int b) { return row[static_cast<std::size_t>(a)] < row[static_cast<std::size_t>(b)]; });
-    const double least = row[static_cast<std::size_t>(by_cost.front())];
+    std::stable_sort(by_cost.begin(), by_cost.end(), [&](int a, int b) { return row[toSize(a)] < row[toSize(b)]; });
+    const double least = row[toSize(by_cost.front())];
     // Renumbering the textures changes nothing: the first mask of a part needs one permutation only.
     if (!touchesPlaced(mask)) by_cost.resize(1);
     for (const int label : by_cost) {
-      const double own = row[static_cast<std::size_t>(label)];
+      const double own = row[toSize(label)];
       const double child_bound = bound - least + own;
       constexpr double kRounding = 1e-9;
       if (child_bound >= result_.cost * (1.0 - kRounding)) return;
@@ -88,29 +89,28 @@ class Search {
         return;
       }
       ++result_.nodes;
-      labels_[static_cast<std::size_t>(mask)] = label;
+      labels_[toSize(mask)] = label;
       branch(placed_cost + own, extraWith(mask, extra));
-      labels_[static_cast<std::size_t>(mask)] = kUnplaced;
+      labels_[toSize(mask)] = kUnplaced;
     }
   }
 
   bool touchesPlaced(int mask) const {
     const auto& pairs = relaxation_.pairsOf(mask);
-    return std::any_of(pairs.begin(), pairs.end(), [&](int pair) {
-      return labels_[static_cast<std::size_t>(relaxation_.across(pair, mask))] != kUnplaced;
-    });
+    return std::any_of(pairs.begin(), pairs.end(),
+                       [&](int pair) { return labels_[toSize(relaxation_.across(pair, mask))] != kUnplaced; });
   }
 
   /// `extra` once `mask` has its label too.
   std::vector<double> extraWith(int mask, std::vector<double> extra) const {
-    const int label = labels_[static_cast<std::size_t>(mask)];
+    const int label = labels_[toSize(mask)];
     for (const int pair : relaxation_.pairsOf(mask)) {
-      const auto other = static_cast<std::size_t>(relaxation_.across(pair, mask));
+      const auto other = toSize(relaxation_.across(pair, mask));
       if (labels_[other] != kUnplaced) continue;
-      const auto costs = std::span(excess_).subspan(static_cast<std::size_t>(pair) * order_, order_);
+      const auto costs = std::span(excess_).subspan(toSize(pair) * order_, order_);
       relaxation_.addConditional(costs, pair, static_cast<int>(other), label, extra.data() + other * order_);
     }
-    for (const auto* triangle : triangles_of_[static_cast<std::size_t>(mask)]) addTriangle(*triangle, extra);
+    for (const auto* triangle : triangles_of_[toSize(mask)]) addTriangle(*triangle, extra);
     return extra;
   }
 
@@ -119,21 +119,21 @@ class Search {
     std::array<int, 3> labels;
     int third = kUnplaced;
     for (std::size_t corner = 0; corner < 3; ++corner) {
-      labels[corner] = labels_[static_cast<std::size_t>(triangle.masks[corner])];
+      labels[corner] = labels_[toSize(triangle.masks[corner])];
       if (labels[corner] != kUnplaced) continue;
       if (third != kUnplaced) return;
       third = static_cast<int>(corner);
     }
     if (third == kUnplaced) return;
-    double* row = extra.data() + static_cast<std::size_t>(triangle.masks[static_cast<std::size_t>(third)]) * order_;
+    double* row = extra.data() + toSize(triangle.masks[toSize(third)]) * order_;
     const PermutationGroup& group = relaxation_.group();
     for (std::size_t q = 0; q < order_; ++q) {
-      labels[static_cast<std::size_t>(third)] = static_cast<int>(q);
+      labels[toSize(third)] = static_cast<int>(q);
       const auto& [k, l, m] = labels;
       const int kl = group.product(k, group.inverse(l));
       const int lm = group.product(l, group.inverse(m));
-      row[q] += triangle.costs[0][static_cast<std::size_t>(kl)] + triangle.costs[1][static_cast<std::size_t>(lm)] +
-                triangle.costs[2][static_cast<std::size_t>(group.product(kl, lm))];
+      row[q] += triangle.costs[0][toSize(kl)] + triangle.costs[1][toSize(lm)] +
+                triangle.costs[2][toSize(group.product(kl, lm))];
     }
   }
 

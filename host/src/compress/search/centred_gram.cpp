@@ -9,7 +9,7 @@ double packCentredGram(const Eigen::Ref<const GramMatrices::Matrix>& gram, Origi
                        std::span<float> out) {
   const Eigen::Index n = gram.rows();
   const Eigen::Index rows = n + (origin == OriginRow::kWith ? 1 : 0);
-  assert(gram.cols() == n && rows <= padded && out.size() == static_cast<std::size_t>(padded) * padded);
+  assert(gram.cols() == n && rows <= padded && out.size() == toSize(padded) * padded);
   std::fill(out.begin(), out.end(), 0.0f);
   if (n == 0) return 0.0;
 

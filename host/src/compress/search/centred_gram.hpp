@@ -10,12 +10,14 @@
 
 #include <span>
 
+#include "cl/layout.h"
 #include "compress/search/gram_matrices.hpp"
+#include "io/counts.hpp"
 
 namespace facezip::compress {
 
 /// Fragments that a vector register holds; kernels pad the rows of a matrix to a multiple of it.
-inline constexpr int kFragmentLanes = 16;
+inline constexpr int kFragmentLanes = FACEZIP_VECTOR;
 
 /// Whether the neutral, the zero fragment that stands for an empty cluster, is row N of the centred matrix.
 enum class OriginRow { kWithout, kWith };
@@ -30,7 +32,7 @@ double packCentredGram(const Eigen::Ref<const GramMatrices::Matrix>& gram, Origi
 /// Rows that packCentredGram() needs for N expressions.
 constexpr int paddedFragments(int expressions, OriginRow origin) {
   const int rows = expressions + (origin == OriginRow::kWith ? 1 : 0);
-  return (rows + kFragmentLanes - 1) / kFragmentLanes * kFragmentLanes;
+  return roundUp(rows, kFragmentLanes);
 }
 
 }  // namespace facezip::compress

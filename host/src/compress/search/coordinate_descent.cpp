@@ -7,6 +7,8 @@
 #include <numeric>
 #include <utility>
 
+#include "io/counts.hpp"
+
 namespace facezip::compress {
 namespace {
 
@@ -14,7 +16,7 @@ namespace {
 double regret(const CostMatrix& costs, double lowest, int clusters) {
   double sum = 0.0;
   for (int i = 0; i < clusters; ++i) {
-    const auto& row = costs[static_cast<std::size_t>(i)];
+    const auto& row = costs[toSize(i)];
     sum += std::accumulate(row.begin(), row.begin() + clusters, 0.0);
   }
   return sum / clusters - lowest;
@@ -24,8 +26,8 @@ double regret(const CostMatrix& costs, double lowest, int clusters) {
 
 double assignmentCost(const CostMatrix& costs, const Assignment& assignment, int clusters) {
   double cost = 0.0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(clusters); ++i) {
-    cost += costs[i][static_cast<std::size_t>(assignment[i])];
+  for (std::size_t i = 0; i < toSize(clusters); ++i) {
+    cost += costs[i][toSize(assignment[i])];
   }
   return cost;
 }
@@ -37,11 +39,11 @@ Assignment bestAssignment(const CostMatrix& costs, int clusters) {
   lowest[0] = 0.0;
   const unsigned all = (1u << clusters) - 1;
   for (unsigned subset = 1; subset <= all; ++subset) {
-    const auto& row = costs[static_cast<std::size_t>(std::popcount(subset)) - 1];
+    const auto& row = costs[toSize(std::popcount(subset)) - 1];
     lowest[subset] = std::numeric_limits<double>::infinity();
     for (unsigned rest = subset; rest != 0; rest &= rest - 1) {
       const int c = std::countr_zero(rest);
-      const double cost = lowest[subset & ~(1u << c)] + row[static_cast<std::size_t>(c)];
+      const double cost = lowest[subset & ~(1u << c)] + row[toSize(c)];
       if (cost < lowest[subset]) {
         lowest[subset] = cost;
         last[subset] = c;
@@ -50,14 +52,14 @@ Assignment bestAssignment(const CostMatrix& costs, int clusters) {
   }
   Assignment assignment{};
   for (unsigned subset = all; subset != 0; subset &= ~(1u << last[subset])) {
-    assignment[static_cast<std::size_t>(std::popcount(subset)) - 1] = last[subset];
+    assignment[toSize(std::popcount(subset)) - 1] = last[subset];
   }
   return assignment;
 }
 
 CoordinateDescent::CoordinateDescent(const SeamTables& tables)
-    : clusters_(tables.clusters), neighbours_(static_cast<std::size_t>(tables.masks)) {
-  const auto side = static_cast<std::size_t>(clusters_);
+    : clusters_(tables.clusters), neighbours_(toSize(tables.masks)) {
+  const auto side = toSize(clusters_);
   for (std::size_t j = 0; j < tables.pairs.size(); ++j) {
     const auto [k, l] = tables.pairs[j];
     assert(k != l);
@@ -69,18 +71,18 @@ CoordinateDescent::CoordinateDescent(const SeamTables& tables)
         from_l[a * side + b] = cost;
       }
     }
-    neighbours_[static_cast<std::size_t>(k)].push_back({l, std::move(from_k)});
-    neighbours_[static_cast<std::size_t>(l)].push_back({k, std::move(from_l)});
+    neighbours_[toSize(k)].push_back({l, std::move(from_k)});
+    neighbours_[toSize(l)].push_back({k, std::move(from_l)});
   }
 }
 
 CostMatrix CoordinateDescent::costsOf(const std::vector<int>& sigma, int k) const {
   CostMatrix costs{};
-  const auto side = static_cast<std::size_t>(clusters_);
-  for (const Neighbour& neighbour : neighbours_[static_cast<std::size_t>(k)]) {
-    const int* placed = sigma.data() + static_cast<std::size_t>(neighbour.mask) * side;
+  const auto side = toSize(clusters_);
+  for (const Neighbour& neighbour : neighbours_[toSize(k)]) {
+    const int* placed = sigma.data() + toSize(neighbour.mask) * side;
     for (std::size_t i = 0; i < side; ++i) {
-      const double* row = neighbour.table.data() + static_cast<std::size_t>(placed[i]) * side;
+      const double* row = neighbour.table.data() + toSize(placed[i]) * side;
       for (std::size_t c = 0; c < side; ++c) costs[i][c] += row[c];
     }
   }
@@ -113,14 +115,14 @@ void CoordinateDescent::descend(std::vector<int>& sigma) const {
 }
 
 void CoordinateDescent::place(std::vector<Candidate>& candidates, int k) const {
-  const auto side = static_cast<std::size_t>(clusters_);
-  Candidate& placed = candidates[static_cast<std::size_t>(k)];
+  const auto side = toSize(clusters_);
+  Candidate& placed = candidates[toSize(k)];
   placed.placed = true;
-  for (const Neighbour& neighbour : neighbours_[static_cast<std::size_t>(k)]) {
-    Candidate& other = candidates[static_cast<std::size_t>(neighbour.mask)];
+  for (const Neighbour& neighbour : neighbours_[toSize(k)]) {
+    Candidate& other = candidates[toSize(neighbour.mask)];
     if (other.placed) continue;
     for (std::size_t i = 0; i < side; ++i) {
-      const auto cluster = static_cast<std::size_t>(placed.best[i]);
+      const auto cluster = toSize(placed.best[i]);
       for (std::size_t c = 0; c < side; ++c) other.costs[i][c] += neighbour.table[c * side + cluster];
     }
     other.best = bestAssignment(other.costs, clusters_);
@@ -138,9 +140,9 @@ std::vector<int> CoordinateDescent::grow(int first) const {
     // Ties, as between masks that touch nothing placed, go to the lowest mask.
     next = -1;
     for (int k = 0; k < static_cast<int>(candidates.size()); ++k) {
-      const Candidate& candidate = candidates[static_cast<std::size_t>(k)];
+      const Candidate& candidate = candidates[toSize(k)];
       if (candidate.placed) continue;
-      if (next < 0 || candidate.regret > candidates[static_cast<std::size_t>(next)].regret) next = k;
+      if (next < 0 || candidate.regret > candidates[toSize(next)].regret) next = k;
     }
   }
   std::vector<int> sigma;

@@ -9,6 +9,7 @@
 #include "compress/search/group_minimum.hpp"
 #include "compress/search/permutation_group.hpp"
 #include "compress/search/seam_cost.hpp"
+#include "io/counts.hpp"
 
 namespace facezip::compress {
 
@@ -56,10 +57,10 @@ class CycleRelaxation {
   /// What is left of the cost of a pair, by relative permutation: C! long.
   std::span<const double> pairCosts(int pair) const { return row(pair_costs_, pair); }
   /// The pairs that hold a mask.
-  const std::vector<int>& pairsOf(int mask) const { return pairs_of_[static_cast<std::size_t>(mask)]; }
+  const std::vector<int>& pairsOf(int mask) const { return pairs_of_[toSize(mask)]; }
   /// The other mask of a pair.
   int across(int pair, int mask) const {
-    const MaskPair& masks = pairs_[static_cast<std::size_t>(pair)];
+    const MaskPair& masks = pairs_[toSize(pair)];
     return masks.k == mask ? masks.l : masks.k;
   }
   /// Adds to sums[q] what `costs` of `pair`, C! long by relative permutation, say of its mask `other` having the

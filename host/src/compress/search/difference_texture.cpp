@@ -5,16 +5,17 @@
 #include <cassert>
 
 #include "compress/bands/difference.hpp"
+#include "io/counts.hpp"
 
 namespace facezip::compress {
 namespace {
 
 /// The table as the kernel reads it: K x N x C, with N rounded up to 2 by zeros (two expressions at a time).
 std::vector<float> kernelCoefficients(const TextureCoefficients& table) {
-  const auto textures = static_cast<std::size_t>(table.textures);
-  const auto expressions = static_cast<std::size_t>(table.expressions);
-  const auto masks = static_cast<std::size_t>(table.masks);
-  const std::size_t padded = device::roundUp(expressions, 2);
+  const auto textures = toSize(table.textures);
+  const auto expressions = toSize(table.expressions);
+  const auto masks = toSize(table.masks);
+  const std::size_t padded = roundUp(expressions, 2);
   assert(table.values.size() == masks * textures * expressions);
   std::vector<float> result(masks * padded * textures, 0.0f);
   for (std::size_t k = 0; k < masks; ++k) {
@@ -41,8 +42,7 @@ DifferenceTextures::DifferenceTextures(device::DeviceContext& context, const Tex
 }
 
 std::size_t DifferenceTextures::textureBytes(const DeviceTiles& tiles, const BandShape& shape) const {
-  return tiles.tileCount() * static_cast<std::size_t>(textures_count_) * static_cast<std::size_t>(shape.channels) *
-         kTileTexels * sizeof(float);
+  return tiles.tileCount() * toSize(textures_count_, shape.channels) * kTileTexels * sizeof(float);
 }
 
 const cl::Buffer& DifferenceTextures::compute(const DeviceTiles& tiles, const cl::Buffer& differences,
@@ -53,18 +53,13 @@ const cl::Buffer& DifferenceTextures::compute(const DeviceTiles& tiles, const cl
   if (tiles.tileCount() == 0) return textures_.buffer();
   // Sixteen texels fill the registers of a CPU; four keep to those that a GPU gives a work-item.
   const std::size_t width = variant_ == device::KernelVariant::kGpu ? 4 : 16;
-  cl::Kernel kernel =
+  const cl::Kernel kernel =
       context_.kernel("difference_texture.cl", "difference_texture",
                       fmt::format("{} -D TEXTURES={} -D WIDTH={}", differenceDefines(shape), textures_count_, width));
-  kernel.setArg(0, tiles.maskBegin());
-  kernel.setArg(1, tiles.maskIndex());
-  kernel.setArg(2, tiles.maskWeights());
-  kernel.setArg(3, coefficients_);
-  kernel.setArg(4, differences);
-  kernel.setArg(5, textures_.buffer());
-  kernel.setArg(6, static_cast<cl_int>(expressions_));
   const std::size_t items = kTileTexels / width;
-  context_.run(kernel, cl::NDRange(items, tiles.tileCount()), cl::NDRange(context_.workGroupSize(kernel, items), 1));
+  context_.launch(
+      kernel, device::WorkItems(items, tiles.tileCount()).inGroupsOf(context_.workGroupSize(kernel, items), 1),
+      tiles.maskBegin(), tiles.maskIndex(), tiles.maskWeights(), coefficients_, differences, textures_, expressions_);
   return textures_.buffer();
 }
 

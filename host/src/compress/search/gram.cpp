@@ -5,20 +5,22 @@
 #include <algorithm>
 #include <cassert>
 
+#include "cl/layout.h"
 #include "compress/bands/difference.hpp"
+#include "io/counts.hpp"
 
 namespace facezip::compress {
 namespace {
 
-// A block is a 4 x 4 piece of the upper triangle of an N x N matrix; gram.cl numbers them J (J + 1) / 2 + I.
-constexpr int kBlockSide = 4;
-constexpr std::size_t kBlockLanes = 16;
+// A block is a square piece of the upper triangle of an N x N matrix; gram.cl numbers them J (J + 1) / 2 + I.
+constexpr int kBlockSide = FACEZIP_GRAM_BLOCK;
+constexpr std::size_t kBlockLanes = kBlockSide * kBlockSide;
 constexpr std::size_t kBlockBytes = kBlockLanes * sizeof(float);
 // A launch over fewer blocks than this would form the weights of its tiles again for too little work.
 constexpr std::size_t kFewestBlocks = 16;
 
 int blockCount(int expressions) {
-  const int side = (expressions + kBlockSide - 1) / kBlockSide;
+  const int side = divideUp(expressions, kBlockSide);
   return side * (side + 1) / 2;
 }
 
@@ -53,7 +55,7 @@ void GramAccumulator::add(const DeviceTiles& tiles, const cl::Buffer& difference
   if (tiles.tileCount() == 0) return;
   holdSums();
   device::requireBytes(context_, differences, differenceBufferBytes(shape, tiles.tileCount()), "differences of a band");
-  const std::size_t blocks = static_cast<std::size_t>(blockCount(sums_.expressions));
+  const std::size_t blocks = toSize(blockCount(sums_.expressions));
   const std::size_t most_rows = largest_partial_bytes_ / (kBlockBytes * std::min(blocks, kFewestBlocks));
   for (std::size_t tile = 0; tile < tiles.tileCount();) {
     const GramPlan plan = planGram(tiles, sums_.slots, pair_slots_, tile, most_rows);
@@ -69,62 +71,53 @@ void GramAccumulator::add(const DeviceTiles& tiles, const cl::Buffer& difference
 }
 
 void GramAccumulator::uploadPlan(const GramPlan& plan) {
-  run_begin_.upload(std::span<const cl_int>(plan.run_begin));
-  run_rows_.upload(std::span<const cl_int>(plan.run_rows));
-  slot_begin_.upload(std::span<const cl_int>(plan.slot_begin));
-  entries_.upload(std::span<const cl_int2>(plan.entries));
-  touched_begin_.upload(std::span<const cl_int>(plan.touched_begin));
-  touched_rows_.upload(std::span<const cl_int>(plan.touched_rows));
+  run_begin_.upload(plan.run_begin);
+  run_rows_.upload(plan.run_rows);
+  slot_begin_.upload(plan.slot_begin);
+  entries_.upload(plan.entries);
+  touched_begin_.upload(plan.touched_begin);
+  touched_rows_.upload(plan.touched_rows);
 }
 
 cl::Event GramAccumulator::runBlocks(const DeviceTiles& tiles, const cl::Buffer& differences, const BandShape& shape,
                                      const GramPlan& plan, int first_block, int block_count) {
-  const auto blocks = static_cast<std::size_t>(block_count);
-  partial_.reserve(plan.rows() * blocks * kBlockBytes);
+  partial_.reserve(toSize(plan.rows(), block_count) * kBlockBytes);
   const bool gpu = variant_ == device::KernelVariant::kGpu;
   // 64 is what gram_gpu.cl is laid out for; a device that allows less still runs it.
   const std::size_t group = gpu ? std::min<std::size_t>(64, context_.info().largest_work_group) : 1;
-  cl::Kernel kernel =
+  const cl::Kernel kernel =
       gpu ? context_.kernel("gram_gpu.cl", "gram_gpu", fmt::format("{} -D WGS={}", differenceDefines(shape), group))
           : context_.kernel("gram.cl", "gram", differenceDefines(shape));
-  const cl::Buffer* buffers[] = {&tiles.maskBegin(),    &tiles.maskWeights(), &tiles.texelWeights(),
-                                 &differences,          &run_begin_.buffer(), &run_rows_.buffer(),
-                                 &slot_begin_.buffer(), &entries_.buffer(),   &partial_.buffer()};
-  cl_uint argument = 0;
-  for (const cl::Buffer* buffer : buffers) kernel.setArg(argument++, *buffer);
-  kernel.setArg(argument++, static_cast<cl_int>(sums_.expressions));
-  kernel.setArg(argument++, static_cast<cl_int>(first_block));
-  kernel.setArg(argument++, static_cast<cl_int>(block_count));
-  return gpu ? context_.run(kernel, cl::NDRange(group * blocks, plan.runs()), cl::NDRange(group, 1))
-             : context_.run(kernel, cl::NDRange(plan.runs()), cl::NDRange(1));
+  const device::WorkItems items = gpu ? device::WorkItems(toSize(group, block_count), plan.runs()).inGroupsOf(group, 1)
+                                      : device::WorkItems(plan.runs()).inGroupsOf(1);
+  return context_.launch(kernel, items, tiles.maskBegin(), tiles.maskWeights(), tiles.texelWeights(), differences,
+                         run_begin_, run_rows_, slot_begin_, entries_, partial_, sums_.expressions, first_block,
+                         block_count);
 }
 
 void GramAccumulator::addSums(const GramPlan& plan, int first_block, int block_count, double metric_weight) {
-  const std::size_t lanes = static_cast<std::size_t>(block_count) * kBlockLanes;
+  const std::size_t lanes = toSize(block_count) * kBlockLanes;
   const std::size_t bytes = plan.touched.size() * lanes * sizeof(cl_float2);
   reduced_.reserve(bytes);
-  cl::Kernel kernel = context_.kernel("gram_reduce.cl", "gram_reduce");
-  kernel.setArg(0, partial_.buffer());
-  kernel.setArg(1, touched_begin_.buffer());
-  kernel.setArg(2, touched_rows_.buffer());
-  kernel.setArg(3, reduced_.buffer());
-  context_.run(kernel, cl::NDRange(lanes, plan.touched.size()), cl::NDRange(kBlockLanes, 1));
+  context_.launch(context_.kernel("gram_reduce.cl", "gram_reduce"),
+                  device::WorkItems(lanes, plan.touched.size()).inGroupsOf(kBlockLanes, 1), partial_, touched_begin_,
+                  touched_rows_, reduced_);
 
   const device::MappedBytes mapped = reduced_.mapForReading(bytes);
   const std::span<const cl_float2> sums = mapped.as<const cl_float2>();
-  const auto n_count = static_cast<std::size_t>(sums_.expressions);
+  const auto n_count = toSize(sums_.expressions);
   for (std::size_t i = 0; i < plan.touched.size(); ++i) {
-    double* matrix = sums_.values.data() + static_cast<std::size_t>(plan.touched[i]) * n_count * n_count;
+    double* matrix = sums_.values.data() + toSize(plan.touched[i]) * n_count * n_count;
     std::size_t row = 0;  // of blocks
-    while ((row + 1) * (row + 2) / 2 <= static_cast<std::size_t>(first_block)) ++row;
-    std::size_t column = static_cast<std::size_t>(first_block) - row * (row + 1) / 2;
+    while ((row + 1) * (row + 2) / 2 <= toSize(first_block)) ++row;
+    std::size_t column = toSize(first_block) - row * (row + 1) / 2;
     for (int b = 0; b < block_count; ++b) {
       for (std::size_t lane = 0; lane < kBlockLanes; ++lane) {
         const std::size_t n = column * kBlockSide + lane / kBlockSide;
         const std::size_t m = row * kBlockSide + lane % kBlockSide;
         // Blocks on the diagonal hold both halves, and the same bits in both.
         if (n > m || m >= n_count) continue;
-        const cl_float2 sum = sums[i * lanes + static_cast<std::size_t>(b) * kBlockLanes + lane];
+        const cl_float2 sum = sums[i * lanes + toSize(b) * kBlockLanes + lane];
         const double value = metric_weight * (static_cast<double>(sum.s[0]) + static_cast<double>(sum.s[1]));
         matrix[n * n_count + m] += value;
         if (n != m) matrix[m * n_count + n] += value;

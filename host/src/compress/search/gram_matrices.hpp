@@ -6,14 +6,12 @@
 #include <cstddef>
 #include <vector>
 
+#include "io/counts.hpp"
+#include "raster/tiles.hpp"
+
 namespace facezip::compress {
 
-/// Two masks k < l that are both above zero at one texel or more.
-struct MaskPair {
-  int k = 0;
-  int l = 0;
-  bool operator==(const MaskPair&) const = default;
-};
+using raster::MaskPair;
 
 /// Which weighting each Gram matrix has. Slot 0 weighs all covered texels alike (for PCA and error shares), slot 1 + k
 /// by M_k^2, slot 1 + K + j by (M_k M_l)^2 of pair j.
@@ -27,8 +25,8 @@ struct GramSlots {
   int pair(int j) const { return 1 + masks + j; }
   /// Of GramMatrices::values for N expressions.
   std::size_t bytes(int expressions) const {
-    const auto n = static_cast<std::size_t>(expressions);
-    return static_cast<std::size_t>(count()) * n * n * sizeof(double);
+    const auto n = toSize(expressions);
+    return toSize(count()) * n * n * sizeof(double);
   }
 };
 
@@ -40,9 +38,7 @@ struct GramMatrices {
 
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   Eigen::Map<const Matrix> slot(int index) const {
-    return {values.data() + static_cast<std::size_t>(index) * static_cast<std::size_t>(expressions) *
-                                static_cast<std::size_t>(expressions),
-            expressions, expressions};
+    return {values.data() + toSize(index, expressions) * toSize(expressions), expressions, expressions};
   }
 };
 

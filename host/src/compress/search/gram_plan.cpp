@@ -4,6 +4,8 @@
 #include <cassert>
 #include <span>
 
+#include "io/counts.hpp"
+
 namespace facezip::compress {
 namespace {
 
@@ -17,10 +19,10 @@ void appendTile(std::span<const int> masks, const GramSlots& slots, const PairSl
   const int count = static_cast<int>(masks.size());
   assert(count < 0x7fff);
   append(slots.whole(), -1, -1);
-  for (int a = 0; a < count; ++a) append(slots.mask(masks[static_cast<std::size_t>(a)]), a, -1);
+  for (int a = 0; a < count; ++a) append(slots.mask(masks[toSize(a)]), a, -1);
   for (int a = 0; a < count; ++a) {
     for (int b = a + 1; b < count; ++b) {
-      const int slot = pair_slots(masks[static_cast<std::size_t>(a)], masks[static_cast<std::size_t>(b)]);
+      const int slot = pair_slots(masks[toSize(a)], masks[toSize(b)]);
       if (slot >= 0) append(slot, a, b);
     }
   }
@@ -44,25 +46,25 @@ std::size_t appendRun(const DeviceTiles& tiles, const GramSlots& slots, const Pa
 std::vector<int> numberRows(std::span<cl_int2> entries, int first_row, std::vector<int>& row_of_slot) {
   std::vector<int> used;
   for (const cl_int2& entry : entries) {
-    int& row = row_of_slot[static_cast<std::size_t>(entry.s[0])];
+    int& row = row_of_slot[toSize(entry.s[0])];
     if (row < 0) used.push_back(entry.s[0]);
     row = 0;
   }
   std::sort(used.begin(), used.end());
   for (std::size_t i = 0; i < used.size(); ++i) {
-    row_of_slot[static_cast<std::size_t>(used[i])] = first_row + static_cast<int>(i);
+    row_of_slot[toSize(used[i])] = first_row + static_cast<int>(i);
   }
-  for (cl_int2& entry : entries) entry.s[0] = row_of_slot[static_cast<std::size_t>(entry.s[0])];
-  for (const int slot : used) row_of_slot[static_cast<std::size_t>(slot)] = -1;
+  for (cl_int2& entry : entries) entry.s[0] = row_of_slot[toSize(entry.s[0])];
+  for (const int slot : used) row_of_slot[toSize(slot)] = -1;
   return used;
 }
 
 /// Inverts run -> slots into slot -> rows.
 void listRows(const std::vector<std::vector<int>>& run_slots, int slot_count, GramPlan& plan) {
-  std::vector<std::vector<cl_int>> rows(static_cast<std::size_t>(slot_count));
+  std::vector<std::vector<cl_int>> rows(toSize(slot_count));
   cl_int row = 0;
   for (const std::vector<int>& run : run_slots) {
-    for (const int slot : run) rows[static_cast<std::size_t>(slot)].push_back(row++);
+    for (const int slot : run) rows[toSize(slot)].push_back(row++);
   }
   plan.touched_begin.push_back(0);
   for (std::size_t slot = 0; slot < rows.size(); ++slot) {
@@ -75,13 +77,11 @@ void listRows(const std::vector<std::vector<int>>& run_slots, int slot_count, Gr
 
 }  // namespace
 
-PairSlots::PairSlots(const GramSlots& slots)
-    : masks_(slots.masks), slot_(static_cast<std::size_t>(slots.masks) * static_cast<std::size_t>(slots.masks), -1) {
+PairSlots::PairSlots(const GramSlots& slots) : masks_(slots.masks), slot_(toSize(slots.masks, slots.masks), -1) {
   for (std::size_t j = 0; j < slots.pairs.size(); ++j) {
     const auto [k, l] = slots.pairs[j];
     assert(0 <= k && k < l && l < masks_);
-    slot_[static_cast<std::size_t>(k) * static_cast<std::size_t>(masks_) + static_cast<std::size_t>(l)] =
-        slots.pair(static_cast<int>(j));
+    slot_[Layout(masks_, masks_)(k, l)] = slots.pair(static_cast<int>(j));
   }
 }
 
@@ -93,7 +93,7 @@ GramPlan planGram(const DeviceTiles& tiles, const GramSlots& slots, const PairSl
   plan.run_rows = {0};
   plan.slot_begin.resize(tiles.tileCount() + 1);
   std::vector<std::vector<int>> run_slots;
-  std::vector<int> row_of_slot(static_cast<std::size_t>(slots.count()), -1);
+  std::vector<int> row_of_slot(toSize(slots.count()), -1);
   std::size_t tile = first_tile;
   while (tile < tiles.tileCount()) {
     const std::size_t first_entry = plan.entries.size();

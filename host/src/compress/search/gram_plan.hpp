@@ -6,6 +6,7 @@
 
 #include "compress/bands/device_tiles.hpp"
 #include "compress/search/gram_matrices.hpp"
+#include "io/counts.hpp"
 
 namespace facezip::compress {
 
@@ -31,7 +32,7 @@ struct GramPlan {
   std::vector<cl_int> touched_rows;   ///< the rows of a slot in rising run order
 
   std::size_t runs() const { return run_begin.size() - 1; }
-  std::size_t rows() const { return static_cast<std::size_t>(run_rows.back()); }
+  std::size_t rows() const { return toSize(run_rows.back()); }
 };
 
 /// Finds the slot of a pair of masks in constant time.
@@ -39,9 +40,7 @@ class PairSlots {
  public:
   explicit PairSlots(const GramSlots& slots);
   /// Slot of masks k < l, or -1 if the pair is not listed.
-  int operator()(int k, int l) const {
-    return slot_[static_cast<std::size_t>(k) * static_cast<std::size_t>(masks_) + static_cast<std::size_t>(l)];
-  }
+  int operator()(int k, int l) const { return slot_[Layout(masks_, masks_)(k, l)]; }
 
  private:
   int masks_;

@@ -5,6 +5,8 @@
 #include <cassert>
 #include <limits>
 
+#include "io/counts.hpp"
+
 namespace facezip::compress {
 namespace {
 
@@ -25,22 +27,22 @@ std::vector<int> fourGroup(const PermutationGroup& group) {
 
 }  // namespace
 
-GroupMinimum::GroupMinimum(const PermutationGroup& group) : order_(static_cast<std::size_t>(group.order())) {
+GroupMinimum::GroupMinimum(const PermutationGroup& group) : order_(toSize(group.order())) {
   const std::vector<int> four = fourGroup(group);
   lanes_ = four.size();
   std::vector<std::size_t> place_of(order_, order_);
   for (int r = 0; r < group.order(); ++r) {
-    if (place_of[static_cast<std::size_t>(r)] != order_) continue;
+    if (place_of[toSize(r)] != order_) continue;
     for (const int v : four) {
       const int element = group.product(v, r);
-      place_of[static_cast<std::size_t>(element)] = elements_.size();
+      place_of[toSize(element)] = elements_.size();
       elements_.push_back(element);
       inverses_.push_back(group.inverse(element));
     }
   }
   for (std::size_t coset = 0; coset < order_; coset += lanes_) {
     for (const int b : elements_) {
-      const std::size_t place = place_of[static_cast<std::size_t>(group.product(elements_[coset], b))];
+      const std::size_t place = place_of[toSize(group.product(elements_[coset], b))];
       const std::size_t lane = place % lanes_;
       sources_.push_back(static_cast<std::uint16_t>(lane * order_ + place - lane));
     }
@@ -56,8 +58,8 @@ void GroupMinimum::minimum(GroupFunction outer, GroupFunction inner, bool invers
   const int* inner_at = places(inner.inverse).data();
   const int* result_at = places(inverse_result).data();
   for (std::size_t place = 0; place < order_; ++place) {
-    outer_[place] = outer.values[static_cast<std::size_t>(outer_at[place])];
-    const double value = inner.values[static_cast<std::size_t>(inner_at[place])];
+    outer_[place] = outer.values[toSize(outer_at[place])];
+    const double value = inner.values[toSize(inner_at[place])];
     for (std::size_t v = 0; v < kLanes; ++v) inner_[v * order_ + (place ^ v)] = value;
   }
   const std::uint16_t* sources = sources_.data();
@@ -70,7 +72,7 @@ void GroupMinimum::minimum(GroupFunction outer, GroupFunction inner, bool invers
       even = even.min(sums(b + 1));
     }
     even = even.min(odd).min(sums(order_ - 1)).eval();
-    for (std::size_t v = 0; v < kLanes; ++v) result[static_cast<std::size_t>(result_at[coset + v])] = even[v];
+    for (std::size_t v = 0; v < kLanes; ++v) result[toSize(result_at[coset + v])] = even[v];
   }
 }
 

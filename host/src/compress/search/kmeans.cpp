@@ -9,6 +9,7 @@
 #include <span>
 
 #include "compress/search/centred_gram.hpp"
+#include "io/counts.hpp"
 
 namespace facezip::compress {
 namespace {
@@ -38,13 +39,13 @@ double inertiaOf(const GramMatrices::Matrix& gram, Labels labels) {
   std::array<std::vector<int>, kMaxClusters> members;
   std::vector<int> order;
   for (int n = 0; n < n_count; ++n) {
-    auto& cluster = members[labels[static_cast<std::size_t>(n)]];
-    if (cluster.empty()) order.push_back(labels[static_cast<std::size_t>(n)]);
+    auto& cluster = members[labels[toSize(n)]];
+    if (cluster.empty()) order.push_back(labels[toSize(n)]);
     cluster.push_back(n);
   }
   double inertia = 0.0;
   for (const int c : order) {
-    const std::vector<int>& cluster = members[static_cast<std::size_t>(c)];
+    const std::vector<int>& cluster = members[toSize(c)];
     double own = 0.0, mixed = 0.0;
     for (std::size_t i = 0; i < cluster.size(); ++i) {
       own += gram(cluster[i], cluster[i]);
@@ -62,9 +63,8 @@ struct BestRun {
 
 /// Labels of one run.
 Labels labelsOf(const KmeansRuns& runs, int mask, int restart) {
-  const auto n = static_cast<std::size_t>(runs.expressions);
-  const auto run =
-      static_cast<std::size_t>(mask) * static_cast<std::size_t>(runs.restarts) + static_cast<std::size_t>(restart);
+  const auto n = toSize(runs.expressions);
+  const auto run = toSize(mask, runs.restarts) + toSize(restart);
   return Labels(runs.labels).subspan(run * n, n);
 }
 
@@ -82,30 +82,24 @@ BestRun bestRunOf(const GramMatrices& grams, const KmeansRuns& runs, int mask) {
 
 std::vector<float> packKmeansGrams(const GramMatrices& grams) {
   const int padded = paddedFragments(grams.expressions, OriginRow::kWithout);
-  const std::size_t entries = static_cast<std::size_t>(padded) * static_cast<std::size_t>(padded);
-  std::vector<float> packed(entries * static_cast<std::size_t>(grams.slots.masks));
+  const std::size_t entries = toSize(padded, padded);
+  std::vector<float> packed(entries * toSize(grams.slots.masks));
   tbb::parallel_for(0, grams.slots.masks, [&](int k) {
     packCentredGram(grams.slot(grams.slots.mask(k)), OriginRow::kWithout, padded,
-                    std::span(packed).subspan(static_cast<std::size_t>(k) * entries, entries));
+                    std::span(packed).subspan(toSize(k) * entries, entries));
   });
   return packed;
 }
 
 cl::Event launchKmeans(device::DeviceContext& context, const KmeansLaunch& launch) {
   const int blocks = paddedFragments(launch.expressions, OriginRow::kWithout) / kFragmentLanes;
-  cl::Kernel kernel = context.kernel("kmeans.cl", "kmeans",
-                                     fmt::format("-D CLUSTERS={} -D BLOCKS={}", launch.options.clusters, blocks));
-  kernel.setArg(0, launch.gram);
-  kernel.setArg(1, launch.labels);
-  kernel.setArg(2, launch.iterations);
-  kernel.setArg(3, static_cast<cl_int>(launch.expressions));
-  kernel.setArg(4, static_cast<cl_int>(launch.masks));
-  kernel.setArg(5, static_cast<cl_int>(launch.options.restarts));
-  kernel.setArg(6, static_cast<cl_int>(launch.options.max_iterations));
-  kernel.setArg(7, static_cast<cl_ulong>(launch.options.seed));
+  const cl::Kernel kernel = context.kernel("kmeans.cl", "kmeans",
+                                           fmt::format("-D CLUSTERS={} -D BLOCKS={}", launch.options.clusters, blocks));
   const std::size_t local = context.workGroupSize(kernel, 64);
-  const std::size_t runs = static_cast<std::size_t>(launch.masks) * static_cast<std::size_t>(launch.options.restarts);
-  return context.run(kernel, cl::NDRange(device::roundUp(runs, local)), cl::NDRange(local));
+  const std::size_t runs = toSize(launch.masks, launch.options.restarts);
+  return context.launch(kernel, device::WorkItems(roundUp(runs, local)).inGroupsOf(local), launch.gram, launch.labels,
+                        launch.iterations, launch.expressions, launch.masks, launch.options.restarts,
+                        launch.options.max_iterations, launch.options.seed);
 }
 
 KmeansRuns runKmeans(device::DeviceContext& context, const GramMatrices& grams, const KmeansOptions& options) {
@@ -115,8 +109,8 @@ KmeansRuns runKmeans(device::DeviceContext& context, const GramMatrices& grams, 
                   .expressions = grams.expressions,
                   .labels = {},
                   .iterations = {}};
-  const std::size_t count = static_cast<std::size_t>(runs.masks) * static_cast<std::size_t>(runs.restarts);
-  runs.labels.resize(count * static_cast<std::size_t>(runs.expressions));
+  const std::size_t count = toSize(runs.masks, runs.restarts);
+  runs.labels.resize(count * toSize(runs.expressions));
   runs.iterations.resize(count);
   if (runs.labels.empty()) return runs;
 
@@ -128,24 +122,23 @@ KmeansRuns runKmeans(device::DeviceContext& context, const GramMatrices& grams, 
                             .labels = context.allocate(runs.labels.size(), CL_MEM_READ_WRITE, "k-means labels"),
                             .iterations = context.allocate(iteration_bytes, CL_MEM_WRITE_ONLY, "k-means iterations")};
   launchKmeans(context, launch);
-  context.read(launch.labels, runs.labels.data(), runs.labels.size(), "k-means labels");
-  context.read(launch.iterations, runs.iterations.data(), iteration_bytes, "k-means iterations");
+  context.read(launch.labels, runs.labels, "k-means labels");
+  context.read(launch.iterations, runs.iterations, "k-means iterations");
   return runs;
 }
 
 Clustering selectBestRuns(const GramMatrices& grams, const KmeansRuns& runs, int clusters) {
-  std::vector<BestRun> best(static_cast<std::size_t>(runs.masks));
-  tbb::parallel_for(0, runs.masks, [&](int k) { best[static_cast<std::size_t>(k)] = bestRunOf(grams, runs, k); });
+  std::vector<BestRun> best(toSize(runs.masks));
+  tbb::parallel_for(0, runs.masks, [&](int k) { best[toSize(k)] = bestRunOf(grams, runs, k); });
 
   Clustering clustering{
       .masks = runs.masks, .expressions = runs.expressions, .clusters = clusters, .labels = {}, .inertia = {}};
   for (int k = 0; k < runs.masks; ++k) {
-    const BestRun& run = best[static_cast<std::size_t>(k)];
+    const BestRun& run = best[toSize(k)];
     const Labels labels = labelsOf(runs, k, run.restart);
     clustering.labels.insert(clustering.labels.end(), labels.begin(), labels.end());
     clustering.inertia.push_back(run.inertia);
-    const auto index =
-        static_cast<std::size_t>(k) * static_cast<std::size_t>(runs.restarts) + static_cast<std::size_t>(run.restart);
+    const auto index = toSize(k, runs.restarts) + toSize(run.restart);
     clustering.converged = clustering.converged && runs.iterations[index] >= 0;
   }
   return clustering;

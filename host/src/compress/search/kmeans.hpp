@@ -7,6 +7,7 @@
 
 #include "compress/search/gram_matrices.hpp"
 #include "device/device_context.hpp"
+#include "io/counts.hpp"
 
 namespace facezip::compress {
 
@@ -30,9 +31,7 @@ struct Clustering {
   std::vector<double> inertia;  ///< K: sum over n of |f_n - its centre|^2, (1/255)^2 units, summed in double
   bool converged = true;        ///< false when a winning run still changed labels in its last iteration
 
-  int label(int k, int n) const {
-    return labels[static_cast<std::size_t>(k) * static_cast<std::size_t>(expressions) + static_cast<std::size_t>(n)];
-  }
+  int label(int k, int n) const { return labels[Layout(masks, expressions)(k, n)]; }
 };
 
 /// Clusters the N fragments of each of the K masks: `restarts` runs of k-means++ and Lloyd per mask, all on the device

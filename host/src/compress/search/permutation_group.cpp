@@ -4,6 +4,8 @@
 #include <cassert>
 #include <numeric>
 
+#include "io/counts.hpp"
+
 namespace facezip::compress {
 
 PermutationGroup::PermutationGroup(int clusters) : clusters_(clusters) {
@@ -20,7 +22,7 @@ PermutationGroup::PermutationGroup(int clusters) : clusters_(clusters) {
   for (std::size_t a = 0; a < order; ++a) {
     for (std::size_t b = 0; b < order; ++b) {
       Element product = elements_[0];
-      for (std::size_t c = 0; c < static_cast<std::size_t>(clusters); ++c) product[c] = elements_[a][elements_[b][c]];
+      for (std::size_t c = 0; c < toSize(clusters); ++c) product[c] = elements_[a][elements_[b][c]];
       const auto found = std::lower_bound(elements_.begin(), elements_.end(), product);
       products_[a * order + b] = static_cast<std::uint8_t>(found - elements_.begin());
       if (found == elements_.begin()) inverses_[a] = static_cast<int>(b);

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "io/counts.hpp"
+
 namespace facezip::compress {
 
 /// Most clusters whose permutations are listed: 5! = 120, where 6! = 720 would make a pair's table of all pairs of
@@ -24,13 +26,11 @@ class PermutationGroup {
   /// C!
   int order() const { return static_cast<int>(elements_.size()); }
   /// Where `element` takes c.
-  int image(int element, int c) const {
-    return elements_[static_cast<std::size_t>(element)][static_cast<std::size_t>(c)];
-  }
+  int image(int element, int c) const { return elements_[toSize(element)][toSize(c)]; }
   /// Row of products, C! long: entry b is a after b.
-  const std::uint8_t* times(int a) const { return products_.data() + static_cast<std::size_t>(a) * elements_.size(); }
+  const std::uint8_t* times(int a) const { return products_.data() + toSize(a) * elements_.size(); }
   int product(int a, int b) const { return times(a)[b]; }
-  int inverse(int a) const { return inverses_[static_cast<std::size_t>(a)]; }
+  int inverse(int a) const { return inverses_[toSize(a)]; }
 
  private:
   int clusters_;

@@ -10,6 +10,7 @@
 
 #include "compress/search/coordinate_descent.hpp"
 #include "compress/search/counter_hash.hpp"
+#include "io/counts.hpp"
 
 namespace facezip::compress {
 namespace {
@@ -24,7 +25,7 @@ std::vector<int> randomSigma(int masks, int clusters, std::uint64_t seed, int re
       const std::uint64_t bits = counterHash(seed, static_cast<std::uint64_t>(restart), static_cast<std::uint64_t>(k),
                                              static_cast<std::uint64_t>(i));
       const std::uint32_t other = boundedDraw(bits, static_cast<std::uint32_t>(i) + 1);
-      std::swap(row[static_cast<std::size_t>(i)], row[other]);
+      std::swap(row[toSize(i)], row[other]);
     }
     sigma.insert(sigma.end(), row.begin(), row.begin() + clusters);
   }
@@ -60,26 +61,26 @@ void checkOptions(const PermutationSearchOptions& options) {
 }  // namespace
 
 double seamCost(const SeamTables& tables, const std::vector<int>& sigma) {
-  const auto clusters = static_cast<std::size_t>(tables.clusters);
+  const auto clusters = toSize(tables.clusters);
   double cost = 0.0;
   for (std::size_t j = 0; j < tables.pairs.size(); ++j) {
-    const int* sigma_k = sigma.data() + static_cast<std::size_t>(tables.pairs[j].k) * clusters;
-    const int* sigma_l = sigma.data() + static_cast<std::size_t>(tables.pairs[j].l) * clusters;
+    const int* sigma_k = sigma.data() + toSize(tables.pairs[j].k) * clusters;
+    const int* sigma_l = sigma.data() + toSize(tables.pairs[j].l) * clusters;
     for (std::size_t i = 0; i < clusters; ++i) cost += tables.entry(static_cast<int>(j), sigma_k[i], sigma_l[i]);
   }
   return cost;
 }
 
-PermutationSearch searchPermutation(const SeamTables& tables, const PermutationSearchOptions& options) {
+PermutationRestarts searchPermutation(const SeamTables& tables, const PermutationSearchOptions& options) {
   checkOptions(options);
   const CoordinateDescent descent(tables);
-  std::vector<Restart> restarts(static_cast<std::size_t>(options.restarts));
+  std::vector<Restart> restarts(toSize(options.restarts));
   tbb::parallel_for(0, options.restarts, [&](int index) {
     options.checkpoint();
-    restarts[static_cast<std::size_t>(index)] = descend(tables, descent, options, index);
+    restarts[toSize(index)] = descend(tables, descent, options, index);
   });
 
-  PermutationSearch search;
+  PermutationRestarts search;
   search.best = {
       .masks = tables.masks, .clusters = tables.clusters, .sigma = {}, .cost = std::numeric_limits<double>::infinity()};
   for (Restart& restart : restarts) {
@@ -93,13 +94,13 @@ PermutationSearch searchPermutation(const SeamTables& tables, const PermutationS
   return search;
 }
 
-std::vector<double> PermutationSearch::finalCosts() const {
+std::vector<double> PermutationRestarts::finalCosts() const {
   std::vector<double> costs;
   for (const auto& restart : sweep_costs) costs.push_back(restart.back());
   return costs;
 }
 
-double PermutationSearch::medianFinalCost() const {
+double PermutationRestarts::medianFinalCost() const {
   std::vector<double> costs = finalCosts();
   std::sort(costs.begin(), costs.end());
   const std::size_t middle = costs.size() / 2;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compress/search/seam_cost.hpp"
+#include "io/counts.hpp"
 
 namespace facezip::compress {
 
@@ -19,9 +20,7 @@ struct Permutation {
   /// pair, which doubles the value and moves no minimum.
   double cost = 0.0;
 
-  int cluster(int k, int i) const {
-    return sigma[static_cast<std::size_t>(k) * static_cast<std::size_t>(clusters) + static_cast<std::size_t>(i)];
-  }
+  int cluster(int k, int i) const { return sigma[Layout(masks, clusters)(k, i)]; }
 };
 
 struct PermutationSearchOptions {
@@ -31,7 +30,8 @@ struct PermutationSearchOptions {
   std::function<void()> checkpoint = [] {};  ///< called between steps, from any thread; what it throws ends the search
 };
 
-struct PermutationSearch {
+/// What the restarts found.
+struct PermutationRestarts {
   Permutation best;  ///< lowest cost; ties go to the lowest restart
   /// Cost of every restart: entry 0 of the random start, entry s after sweep s; never rising. For a convergence plot.
   std::vector<std::vector<double>> sweep_costs;
@@ -47,7 +47,7 @@ struct PermutationSearch {
 /// while the others stand, until a sweep changes nothing. Restarts run in parallel; the result depends on `tables`
 /// and `options` alone.
 /// Throws InputError for options outside their ranges.
-PermutationSearch searchPermutation(const SeamTables& tables, const PermutationSearchOptions& options = {});
+PermutationRestarts searchPermutation(const SeamTables& tables, const PermutationSearchOptions& options = {});
 
 /// Clusters in the order they came in, sigma(i, k) = i, with its cost: the paper's baseline without permutation.
 Permutation identityPermutation(const SeamTables& tables);

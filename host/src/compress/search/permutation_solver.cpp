@@ -10,6 +10,7 @@
 #include "compress/search/branch_and_bound.hpp"
 #include "compress/search/coordinate_descent.hpp"
 #include "compress/search/cycle_relaxation.hpp"
+#include "io/counts.hpp"
 
 namespace facezip::compress {
 namespace {
@@ -39,10 +40,10 @@ class Incumbent {
 
   void offerGrown(const std::function<void()>& checkpoint) {
     const int starts = growthStarts(tables_);
-    std::vector<std::vector<int>> grown(static_cast<std::size_t>(starts));
+    std::vector<std::vector<int>> grown(toSize(starts));
     tbb::parallel_for(0, starts, [&](int start) {
       checkpoint();
-      auto& sigma = grown[static_cast<std::size_t>(start)];
+      auto& sigma = grown[toSize(start)];
       sigma = descent_.grow(start * tables_.masks / starts);
       descent_.descend(sigma);
     });
@@ -106,7 +107,7 @@ double bestBound(const SeamTables& tables, const PermutationSolverOptions& optio
 
 PermutationSolution solvePermutation(const SeamTables& tables, const PermutationSolverOptions& options) {
   PermutationSolution solution;
-  std::future<PermutationSearch> descent;  // beside the messages, which keep one thread busy
+  std::future<PermutationRestarts> descent;  // beside the messages, which keep one thread busy
   if (options.solver != PermutationSolver::kMessagePassing) {
     descent = std::async(std::launch::async, [&] { return searchPermutation(tables, options.descent); });
   }

@@ -19,9 +19,9 @@ struct PermutationSolverOptions {
 };
 
 struct PermutationSolution {
-  Permutation best;           ///< lowest cost
-  bool by_descent = false;    ///< whether a random restart found it, as where costs are the same; else message passing
-  PermutationSearch descent;  ///< random restarts; empty if the solver is message passing alone
+  Permutation best;         ///< lowest cost
+  bool by_descent = false;  ///< whether a random restart found it, as where costs are the same; else message passing
+  PermutationRestarts descent;  ///< random restarts; empty if the solver is message passing alone
   /// Lower bound of the seam cost of any permutation, in the unit of its cost; never above best.cost.
   double bound = 0.0;
   /// Entry 0: the pairs' minima alone; entry s: after iteration s of message passing; never falling.

@@ -20,17 +20,15 @@ struct PackedPairs {
 };
 
 PackedPairs packPairs(const GramMatrices& grams, int first, int count, int padded) {
-  const std::size_t entries = static_cast<std::size_t>(padded) * static_cast<std::size_t>(padded);
-  PackedPairs packed{std::vector<float>(entries * static_cast<std::size_t>(count)),
-                     std::vector<double>(static_cast<std::size_t>(count)),
-                     {}};
+  const std::size_t entries = toSize(padded, padded);
+  PackedPairs packed{std::vector<float>(entries * toSize(count)), std::vector<double>(toSize(count)), {}};
   tbb::parallel_for(0, count, [&](int j) {
-    const auto index = static_cast<std::size_t>(j);
+    const auto index = toSize(j);
     packed.scales[index] = packCentredGram(grams.slot(grams.slots.pair(first + j)), OriginRow::kWith, padded,
                                            std::span(packed.grams).subspan(index * entries, entries));
   });
   for (int j = first; j < first + count; ++j) {
-    const MaskPair& pair = grams.slots.pairs[static_cast<std::size_t>(j)];
+    const MaskPair& pair = grams.slots.pairs[toSize(j)];
     packed.masks.insert(packed.masks.end(), {pair.k, pair.l});
   }
   return packed;
@@ -40,31 +38,24 @@ PackedPairs packPairs(const GramMatrices& grams, int first, int count, int padde
 
 cl::Event launchSeamCost(device::DeviceContext& context, const SeamCostLaunch& launch) {
   const int blocks = paddedFragments(launch.expressions, OriginRow::kWith) / kFragmentLanes;
-  cl::Kernel kernel =
+  const cl::Kernel kernel =
       context.kernel("seam_cost.cl", "seam_cost", fmt::format("-D CLUSTERS={} -D BLOCKS={}", launch.clusters, blocks));
-  kernel.setArg(0, launch.gram);
-  kernel.setArg(1, launch.pair_masks);
-  kernel.setArg(2, launch.labels);
-  kernel.setArg(3, launch.tables);
-  kernel.setArg(4, static_cast<cl_int>(launch.expressions));
-  kernel.setArg(5, static_cast<cl_int>(launch.pairs));
   const std::size_t local = context.workGroupSize(kernel, 64);
-  const std::size_t entries = static_cast<std::size_t>(launch.pairs) * static_cast<std::size_t>(launch.clusters) *
-                              static_cast<std::size_t>(launch.clusters);
-  return context.run(kernel, cl::NDRange(device::roundUp(entries, local)), cl::NDRange(local));
+  const std::size_t entries = toSize(launch.pairs, launch.clusters, launch.clusters);
+  return context.launch(kernel, device::WorkItems(roundUp(entries, local)).inGroupsOf(local), launch.gram,
+                        launch.pair_masks, launch.labels, launch.tables, launch.expressions, launch.pairs);
 }
 
 SeamTables computeSeamTables(device::DeviceContext& context, const GramMatrices& grams, const Clustering& clustering,
                              std::size_t batch_bytes) {
   const int pairs = static_cast<int>(grams.slots.pairs.size());
-  const std::size_t table =
-      static_cast<std::size_t>(clustering.clusters) * static_cast<std::size_t>(clustering.clusters);
+  const std::size_t table = toSize(clustering.clusters, clustering.clusters);
   SeamTables tables{
       .masks = clustering.masks, .clusters = clustering.clusters, .pairs = grams.slots.pairs, .values = {}};
-  tables.values.reserve(table * static_cast<std::size_t>(pairs));
+  tables.values.reserve(table * toSize(pairs));
 
   const int padded = paddedFragments(grams.expressions, OriginRow::kWith);
-  const std::size_t pair_bytes = static_cast<std::size_t>(padded) * static_cast<std::size_t>(padded) * sizeof(float);
+  const std::size_t pair_bytes = toSize(padded, padded) * sizeof(float);
   const int batch = static_cast<int>(std::clamp<std::size_t>(batch_bytes / pair_bytes, 1, 1 << 20));
   const cl::Buffer labels =
       context.upload(std::vector<std::uint8_t>(clustering.labels.begin(), clustering.labels.end()), "cluster labels");
@@ -72,7 +63,7 @@ SeamTables computeSeamTables(device::DeviceContext& context, const GramMatrices&
   for (int first = 0; first < pairs; first += batch) {
     const int count = std::min(batch, pairs - first);
     const PackedPairs packed = packPairs(grams, first, count, padded);
-    std::vector<float> values(table * static_cast<std::size_t>(count));
+    std::vector<float> values(table * toSize(count));
     const std::size_t value_bytes = values.size() * sizeof(float);
     const SeamCostLaunch launch{.pairs = count,
                                 .expressions = grams.expressions,
@@ -82,7 +73,7 @@ SeamTables computeSeamTables(device::DeviceContext& context, const GramMatrices&
                                 .labels = labels,
                                 .tables = context.allocate(value_bytes, CL_MEM_WRITE_ONLY, "seam cost tables")};
     launchSeamCost(context, launch);
-    context.read(launch.tables, values.data(), value_bytes, "seam cost tables");
+    context.read(launch.tables, values, "seam cost tables");
     for (std::size_t i = 0; i < values.size(); ++i) {
       tables.values.push_back(packed.scales[i / table] * static_cast<double>(values[i]));
     }

@@ -7,6 +7,7 @@
 #include "compress/search/gram_matrices.hpp"
 #include "compress/search/kmeans.hpp"
 #include "device/device_context.hpp"
+#include "io/counts.hpp"
 
 namespace facezip::compress {
 
@@ -24,9 +25,8 @@ struct SeamTables {
   std::vector<double> values;
 
   double entry(int pair, int a, int b) const {
-    const auto side = static_cast<std::size_t>(clusters);
-    return values[(static_cast<std::size_t>(pair) * side + static_cast<std::size_t>(a)) * side +
-                  static_cast<std::size_t>(b)];
+    const auto side = toSize(clusters);
+    return values[(toSize(pair) * side + toSize(a)) * side + toSize(b)];
   }
 };
 

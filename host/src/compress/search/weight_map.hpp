@@ -7,18 +7,12 @@
 #include <vector>
 
 #include "device/device_context.hpp"
+#include "device/pooled_buffer.hpp"
+#include "raster/grid_masks.hpp"
 
 namespace facezip::compress {
 
-/// Masks at the cells of the weight grid, a row of cells after the other. Entries of cell p are
-/// cell_begin[p] .. cell_begin[p + 1] of the other two.
-struct CellMasks {
-  std::vector<int> cell_begin;      ///< #cells + 1, rising from 0
-  std::vector<int> mask_index;      ///< in [0, K), no mask twice in a cell
-  std::vector<float> mask_weights;  ///< M_k at the cell, in [0, 1]; a cell's sum to 1; no entry means weights of 0
-
-  std::size_t cells() const { return cell_begin.empty() ? 0 : cell_begin.size() - 1; }
-};
+using raster::CellMasks;
 
 /// Fills weight maps, a range of cells at a time, so that a caller can stream them in bands. Keeps its device buffers
 /// from one call to the next. Not for use by two threads at once.
@@ -42,14 +36,14 @@ class WeightMapper {
   void fillAll(const CellMasks& cells, std::span<std::uint8_t> out);
 
  private:
-  cl::Buffer& pooled(cl::Buffer& buffer, std::size_t& capacity, std::size_t bytes, const char* what);
-
   device::DeviceContext& context_;
   int expressions_;
   int clusters_;
   cl::Buffer texture_of_;
-  cl::Buffer cell_begin_, mask_index_, mask_weights_, weights_;
-  std::size_t cell_begin_capacity_ = 0, mask_index_capacity_ = 0, mask_weights_capacity_ = 0, weights_capacity_ = 0;
+  device::PooledBuffer cell_begin_;
+  device::PooledBuffer mask_index_;
+  device::PooledBuffer mask_weights_;
+  device::PooledBuffer weights_;
 };
 
 /// Sizes and device buffers of one launch of kernels/cl/weight_map.cl, which describes them.

@@ -1,31 +1,38 @@
-#include <benchmark/benchmark.h>
-
+// permutation_search_bench.cpp - steps on the host: 100 restarts of coordinate descent, and the solver with its bound.
 #include "compress/search/permutation_search.hpp"
+#include "compress/search/permutation_solver.hpp"
+#include "problems/seam_cost.hpp"
 #include "roof.hpp"
-#include "synthetic_grams.hpp"
 
 namespace facezip::bench {
 namespace {
 
-/// Arguments: K, C. 100 restarts of the search on the host, on the tables of 20 random expressions.
+/// Arguments: K, C. Tables of 20 expressions under masks that overlap nine others on either side.
+compress::SeamTables tablesOf(const benchmark::State& state) {
+  const auto masks = static_cast<int>(state.range(0));
+  const auto clusters = static_cast<int>(state.range(1));
+  test::SeamCostProblem problem(benchDevice(), test::wideCapture(20, masks, /* reach= */ 9, /* seed= */ 1), {});
+  problem.clustering = compress::clusterFragments(benchDevice(), problem.grams, {.clusters = clusters, .restarts = 1});
+  problem.run();
+  return problem.result();
+}
+
 void permutationSearch(benchmark::State& state) {
-  device::DeviceContext& context = benchDevice();
-  const auto grams = makeGrams(20, static_cast<int>(state.range(0)), 9);
-  const auto clustering =
-      compress::clusterFragments(context, grams, {.clusters = static_cast<int>(state.range(1)), .restarts = 1});
-  const compress::SeamTables tables = compress::computeSeamTables(context, grams, clustering);
+  const compress::SeamTables tables = tablesOf(state);
   measure(state, [&] { benchmark::DoNotOptimize(compress::searchPermutation(tables).best.cost); });
 }
-BENCHMARK(permutationSearch)
-    ->Name("permutation_search")
-    ->ArgNames({"K", "C"})
-    ->Args({16, 4})
-    ->Args({53, 4})
-    ->Args({53, 8})
-    ->Args({128, 4})
-    ->Args({200, 4})
-    ->UseManualTime()
-    ->Unit(benchmark::kMillisecond);
+
+void permutationSolver(benchmark::State& state) {
+  const compress::SeamTables tables = tablesOf(state);
+  measure(state, [&] { benchmark::DoNotOptimize(compress::solvePermutation(tables).best.cost); });
+}
+
+void sizes(benchmark::internal::Benchmark* row) {
+  row->ArgNames({"K", "C"})->Args({16, 4})->Args({53, 4})->Args({53, 8})->Args({128, 4})->Args({200, 4});
+  row->Apply(milliseconds);
+}
+BENCHMARK(permutationSearch)->Name("permutation_search")->Apply(sizes);
+BENCHMARK(permutationSolver)->Name("permutation_solver")->ArgNames({"K", "C"})->Args({53, 4})->Apply(milliseconds);
 
 }  // namespace
 }  // namespace facezip::bench

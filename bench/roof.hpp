@@ -38,4 +38,15 @@ void setBandwidthCounters(benchmark::State& state, double bytes_per_iteration);
 /// Counters "GFLOP/s" and "of_fma" from the useful operations of one iteration; a multiply-add counts as two.
 void setFlopCounters(benchmark::State& state, double flops_per_iteration);
 
+/// A row of a step: runs its problem (tests/problems) and counts what that says must be moved and computed.
+template <typename Problem>
+void benchStep(benchmark::State& state, Problem&& problem) {
+  measure(state, [&] { problem.run(); });
+  if constexpr (requires { problem.bytes(); }) setBandwidthCounters(state, problem.bytes());
+  if constexpr (requires { problem.flops(); }) setFlopCounters(state, problem.flops());
+}
+
+/// How every row is registered.
+inline void milliseconds(benchmark::internal::Benchmark* row) { row->UseManualTime()->Unit(benchmark::kMillisecond); }
+
 }  // namespace facezip::bench

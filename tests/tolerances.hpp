@@ -45,7 +45,7 @@ inline constexpr double kCompressStretch = 2e-3;
 
 // Grid weights after two sweeps: the system's error times the condition of a cell's block, which trust and smoothness
 // bound by about 1e4 in the tests.
-inline constexpr double kRelaxedWeight = 2e-2;
+inline constexpr double kRelaxedWeight = 5e-4;
 
 // Frames of 8 bits, in steps for every unit of scale and of weight: -scale (zero + 32768) is a float32 of up to 1.5 *
 // 2^15, off by 2^-9 at most, and by less where the scale is below 1/2.

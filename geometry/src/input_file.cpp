@@ -30,10 +30,12 @@ std::string faultOf(const struct stat& status) {
 
 }  // namespace
 
+// Opening a pipe would wait for a writer.
 InputFile::InputFile(const fs::path& file, const std::string& expected, const std::string& cure)
-    : file_(file), expected_(expected) {
-  // Opening a pipe would wait for a writer.
-  descriptor_ = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    : InputFile(::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC), file, expected, cure) {}
+
+InputFile::InputFile(int descriptor, const fs::path& file, const std::string& expected, const std::string& cure)
+    : file_(file), expected_(expected), descriptor_(descriptor) {
   if (descriptor_ < 0) {
     const int error = errno;
     throw InputError({file.string(), "", expected, error == ENXIO ? "a socket" : describe(error),

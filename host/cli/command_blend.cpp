@@ -6,6 +6,7 @@
 #include "commands.hpp"
 #include "facezip/blend.hpp"
 #include "facezip/frame_file.hpp"
+#include "option_types.hpp"
 #include "shared_options.hpp"
 #include "terminal.hpp"
 
@@ -19,6 +20,7 @@ struct Arguments {
   std::string output;
   std::string gain;
   std::string device = "auto";
+  std::string memory = "2GiB";
 };
 
 /// Frames to blend: one from --weights, or those of --animation.
@@ -27,29 +29,15 @@ AnimationClip readFrames(const Arguments& arguments, const Package& package) {
   return {static_cast<int>(package.expressions().size()), weightsByName(package, parseWeights(arguments.weights))};
 }
 
-void blendFrames(const Arguments& arguments, Progress& progress) {
-  const Package package = Package::open(arguments.package);
+void blendFrames(const Arguments& arguments, const Package& package, std::uint64_t memory_bytes, Progress& progress) {
   const AnimationClip clip = readFrames(arguments, package);
   const FramePattern pattern(arguments.output, !arguments.animation.empty(), package.maps().size());
   pattern.requireFits(package, clip.frames(),
                       ProtectedPaths()
                           .addFile(arguments.animation, "the clip that is read")
                           .addFile(arguments.gain, "the gains that are read"));
-  Blender blender(package, openDevice(arguments.device, &progress));
-  if (!arguments.gain.empty()) blender.setGain(readGain(arguments.gain, package));
-  std::vector<std::byte> frame;
-  progress.stage("blending", static_cast<std::size_t>(clip.frames()));
-  for (int f = 0; f < clip.frames(); ++f) {
-    progress.checkCancelled();
-    blender.setWeights(clip.frame(f));
-    for (std::size_t m = 0; m < package.maps().size(); ++m) {
-      const PackageMap& map = package.maps()[m];
-      frame.resize(map.frameBytes());
-      blender.blend(static_cast<int>(m), frame);
-      writeFrame(pattern.file(f, map.name), map, frame, &progress);
-    }
-    progress.advance(static_cast<std::size_t>(f) + 1);
-  }
+  const Gain gain = arguments.gain.empty() ? unitGain(package) : readGain(arguments.gain, package);
+  writeFrames(package, clip, gain, pattern, openDevice(arguments.device, &progress), progress, memory_bytes);
 }
 
 }  // namespace
@@ -72,10 +60,13 @@ void addBlendCommand(CLI::App& app, const CommonOptions& common) {
   command->add_option("--gain", arguments->gain, "Gains of expressions and regions, a preset that `facezip view` saved")
       ->type_name("FILE.json");
   addDeviceOption(*command, arguments->device);
+  addMemoryOption(*command, arguments->memory);
   command->callback([arguments, &common] {
+    const std::uint64_t memory_bytes = parseBytes("--memory", arguments->memory);
     TerminalProgress progress(common.quiet);
     const CancelOnSignal cancel(progress);
-    blendFrames(*arguments, progress);
+    withPackage(arguments->package,
+                [&](const Package& package) { blendFrames(*arguments, package, memory_bytes, progress); });
   });
 }
 

@@ -10,6 +10,7 @@
 #include "facezip/package.hpp"
 #include "facezip/printable.hpp"
 #include "option_types.hpp"
+#include "shared_options.hpp"
 #include "terminal.hpp"
 
 namespace facezip::cli {
@@ -52,14 +53,21 @@ void printPackage(const Package& package) {
 }  // namespace
 
 void addInfoCommand(CLI::App& app, const CommonOptions& common) {
-  const auto package = std::make_shared<std::string>();
+  struct Arguments {
+    std::string package;
+    std::string memory = "2GiB";
+  };
+  const auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("info", "Checks a package and says what it holds");
-  command->add_option("package", *package, "Directory of the package")->required()->type_name("PACKAGE");
-  command->callback([package, &common] {
-    const Package opened = Package::open(*package);
+  command->add_option("package", arguments->package, "Directory of the package")->required()->type_name("PACKAGE");
+  addMemoryOption(*command, arguments->memory);
+  command->callback([arguments, &common] {
+    const std::uint64_t memory_bytes = parseBytes("--memory", arguments->memory);
     TerminalProgress progress(common.quiet);
-    checkTexels(opened, progress);
-    printPackage(opened);
+    withPackage(arguments->package, [&](const Package& package) {
+      checkTexels(package, progress, memory_bytes);
+      printPackage(package);
+    });
   });
 }
 

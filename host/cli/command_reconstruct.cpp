@@ -3,6 +3,7 @@
 #include "cancel_on_signal.hpp"
 #include "commands.hpp"
 #include "facezip/reconstruct.hpp"
+#include "option_types.hpp"
 #include "shared_options.hpp"
 #include "terminal.hpp"
 
@@ -14,6 +15,7 @@ void addReconstructCommand(CLI::App& app, const CommonOptions& common) {
     std::string output;
     std::vector<std::string> expressions;
     std::string device = "auto";
+    std::string memory = "2GiB";
   };
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command =
@@ -24,11 +26,15 @@ void addReconstructCommand(CLI::App& app, const CommonOptions& common) {
       ->type_name("NAME")
       ->delimiter(',');
   addDeviceOption(*command, arguments->device);
+  addMemoryOption(*command, arguments->memory);
   command->callback([arguments, &common] {
+    const std::uint64_t memory_bytes = parseBytes("--memory", arguments->memory);
     TerminalProgress progress(common.quiet);
     const CancelOnSignal cancel(progress);
-    const Package package = Package::open(arguments->package);
-    reconstruct(package, arguments->output, arguments->expressions, openDevice(arguments->device, &progress), progress);
+    withPackage(arguments->package, [&](const Package& package) {
+      reconstruct(package, arguments->output, arguments->expressions, openDevice(arguments->device, &progress),
+                  progress, memory_bytes);
+    });
   });
 }
 

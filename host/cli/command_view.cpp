@@ -21,8 +21,7 @@ struct Arguments {
   int port = 8080;
 };
 
-void view(const Arguments& arguments, Progress& progress) {
-  const Package package = Package::open(arguments.package);
+void view(const Arguments& arguments, const Package& package, Progress& progress) {
   if (arguments.output) {
     writeViewer(package, *arguments.output, progress);
     say("Look at {}\n", (std::filesystem::path(*arguments.output) / "index.html").string());
@@ -53,7 +52,7 @@ void addViewCommand(CLI::App& app, const CommonOptions& common) {
   command->callback([arguments, &common] {
     TerminalProgress progress(common.quiet);
     const CancelOnSignal cancel(progress);
-    view(*arguments, progress);
+    withPackage(arguments->package, [&](const Package& package) { view(*arguments, package, progress); });
   });
 }
 

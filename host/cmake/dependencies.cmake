@@ -18,7 +18,7 @@ find_package(nlohmann_json 3.11 REQUIRED)
 find_package(fmt REQUIRED)
 find_package(TinyGLTF REQUIRED)
 find_package(astcenc 4.2 REQUIRED)
-pkg_check_modules(httplib REQUIRED IMPORTED_TARGET cpp-httplib)
+find_package(Boost 1.74 REQUIRED)  # Beast: headers alone
 find_program(FACEZIP_NODE node REQUIRED)
 find_program(FACEZIP_NPM npm REQUIRED)
 if(FACEZIP_BUILD_TESTS)

@@ -5,7 +5,7 @@
 // With FACTORS the systems are not solved but kept, for textures that are coded in blocks one after the other
 // (difference_target.cl).
 //
-// NDRange  global {256 / (LANES * ROWS), tiles}, local any
+// NDRange  global {256 / (LANES * ROWS), tiles}, local {256 / (LANES * ROWS), 1}
 // Buffers  tiles          in   [tile] int2        column and row of tiles in the band
 //          texel_weights  in   [tile][256] float  weight of a texel in every sum, 0 outside the covered texels
 //          active         in   [tile][256] float  above 0 where D is wanted (gutter too); elsewhere D becomes 0

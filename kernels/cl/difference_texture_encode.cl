@@ -5,7 +5,8 @@
 // Two kernels: difference_texture_clear writes the code of 0 everywhere, since tiles without work are not in the list;
 // difference_texture_encode then writes the texels of the tiles, where D is 0 outside the masks.
 //
-// NDRange  clear: global {width, rows, textures}, local any.  encode: global {16, textures, tiles}, local {16, 1, 1}
+// NDRange  clear:  global {roundUp(texels / 64, 16), textures}, local {16, 1}: one work-item per 64 texels
+//          encode: global {16, textures, tiles}, local {16, 1, 1}: one work-item per row of 16 texels of a tile
 // Buffers  tiles     in   [tile] int2   column and row of tiles in the band
 //          textures  in   [tile][texture][CHANNELS][256] float, units of 1/255
 //          encoding  in   [texture][CHANNELS] float2  (1 / scale or 0 where scale is 0, offset)
@@ -31,10 +32,15 @@ static CODE encode(float value, float2 encoding) {
   return (CODE)clamp((value - encoding.y) * encoding.x + 0.5f, 0.0f, CODE_MAX);
 }
 
-kernel void difference_texture_clear(global const float2* encoding, global CODE* codes) {
-  const ulong texture = get_global_id(2);
-  const ulong texel = (texture * get_global_size(1) + get_global_id(1)) * get_global_size(0) + get_global_id(0);
-  for (int c = 0; c < CHANNELS; ++c) codes[texel * CHANNELS + c] = encode(0.0f, encoding[texture * CHANNELS + c]);
+kernel void difference_texture_clear(global const float2* encoding, global CODE* codes, ulong texels) {
+  const ulong texture = get_global_id(1);
+  const ulong begin = get_global_id(0) * FACEZIP_CLEARED_TEXELS;
+  const ulong end = min(begin + FACEZIP_CLEARED_TEXELS, texels);
+  CODE zero[CHANNELS];
+  for (int c = 0; c < CHANNELS; ++c) zero[c] = encode(0.0f, encoding[texture * CHANNELS + c]);
+  for (ulong texel = begin; texel < end; ++texel) {
+    for (int c = 0; c < CHANNELS; ++c) codes[(texture * texels + texel) * CHANNELS + c] = zero[c];
+  }
 }
 
 kernel void difference_texture_encode(global const int2* tiles, global const float* textures,

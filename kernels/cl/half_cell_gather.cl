@@ -2,7 +2,8 @@
 // Half cell 2 q of a row weighs 3/4 in cell q and 1/4 in cell q - 1, half cell 2 q + 1 in q and q + 1; beyond the edge the
 // outer cell repeats.
 //
-// NDRange  global {1 + C * lanes / 16, columns, rows}, local any: the blocks of a cell, then 16 right-hand sides each
+// NDRange  global {1 + C * lanes / 16, columns, rows}, local {a divisor of it, 1, 1}: the blocks of a cell,
+//          then 16 right-hand sides each
 // Buffers  halves  in   as half_cell_fit.cl writes it, half rows from first_half_row on
 //          system  out  [row][column][ENTRIES] float   cell rows from first_cell_row on
 // Defines  TEXTURES, EXPRESSION_LANES  grid_weights.h

@@ -17,6 +17,9 @@
 // Gram matrices are summed in blocks of 4 x 4 expressions (gram.cl): 16 products fill a vector.
 #define FACEZIP_GRAM_BLOCK 4
 
+// Work-items of difference_texture_clear take so many texels.
+#define FACEZIP_CLEARED_TEXELS 64
+
 // Work-items of weight_map.cl take so many cells.
 #define FACEZIP_WEIGHT_MAP_CELLS 16
 

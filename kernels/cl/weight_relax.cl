@@ -4,7 +4,7 @@
 // Cells couple to their 8 neighbours only, so the cells of one of 4 colours (parity of row and column) do not touch each
 // other: each step is exact and lowers the objective, whatever the order of the work-items.
 //
-// NDRange  global {EXPRESSION_LANES / LANES, columns of the colour, rows of the colour}, local any
+// NDRange  global {EXPRESSION_LANES / LANES, columns of the colour, rows of the colour}, local {a divisor of it, 1, 1}
 // Buffers  system   in      [row][column][ENTRIES] float   cell rows from first_cell_row on
 //          start    in      [row][column][C][lanes] float
 //          weights  in out  the same

@@ -1,7 +1,7 @@
 // weight_system_gather.cl - adds up, for every cell of the weight grid, what the tiles of a band hold of its equations
 //   system[q] = keep * system[q] + metric_weight * sum over tiles of partial[tile][q]
 //
-// NDRange  global {ENTRIES / 16, columns, rows}, local any: one work-item per 16 numbers of a cell
+// NDRange  global {ENTRIES / 16, columns, rows}, local {a divisor of it, 1, 1}: one work-item per 16 numbers of a cell
 // Buffers  tile_at  in   [tile rows][tile columns] int   index of a tile of the band, -1 where there is none
 //          partial  in   as weight_system.cl writes it
 //          system   out  [row][column][ENTRIES] float    cell rows from first_cell_row on

@@ -1,6 +1,6 @@
 // weight_system_gpu.cl - what weight_system.cl computes, for GPUs: one work-item per number instead of one per tile
 //
-// NDRange  global {ENTRIES, CELLS_OF_16 * CELLS_OF_16, tiles}, local {any, 1, 1}
+// NDRange  global {ENTRIES, CELLS_OF_16 * CELLS_OF_16, tiles}, local {16, 1, 1}
 // Buffers, defines  as in weight_system.cl
 // Sums     fixed order: rows, then columns of the tile
 

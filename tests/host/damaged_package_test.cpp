@@ -109,6 +109,26 @@ TEST(PackageJson, TruncatedAtEveryLengthIsRefused) {
   EXPECT_NO_THROW(package::parsePackageJson(text, "package.json"));
 }
 
+/// Texts of a few megabytes that take a reader gigabytes, or hours, where it lets them; messages that hold them whole.
+TEST(PackageJson, LargeTextsAreRefusedAtOnce) {
+  const auto repeated = [](const std::string& begin, const std::string& part, int times) {
+    std::string text = begin;
+    for (int i = 0; i < times; ++i) text += part;
+    return text;
+  };
+  for (const std::string& text :
+       {repeated("[", "{},", 5000000), repeated("[", "[],", 5000000), repeated("{\"a\":", "{\"a\":", 1000000),
+        repeated("", "[", 5000000), "{\"a\": \"" + std::string(20000000, 'x'), std::string(20000000, '1'),
+        "[" + std::string(20000000, ' ') + "1e999", "{\"" + std::string(20000000, '\x1f')}) {
+    try {
+      package::parsePackageJson(text, "package.json");
+      ADD_FAILURE();
+    } catch (const InputError& error) {
+      EXPECT_LT(std::string(error.what()).size(), 2000u);
+    }
+  }
+}
+
 /// What compress writes is accepted as it comes back from JSON, though the check of zero has no tolerance.
 TEST(PackageJson, EveryEncodingKeepsItsZeroThroughText) {
   std::mt19937 random(9);

@@ -170,7 +170,7 @@ TEST_F(Gains, DamagedGuidesAreRefused) {
   EXPECT_THAT(messageOfOpening([](json& d) { d["mesh"]["file"] = "mesh.glb"; }), HasSubstr("binary glTF"));
   fs::remove(folder_ / "package/mesh.glb");
   fs::create_directory(folder_ / "package/mesh.glb");
-  EXPECT_THAT(messageOfOpening([](json& d) { d["mesh"]["file"] = "mesh.glb"; }), HasSubstr("Is a directory"));
+  EXPECT_THAT(messageOfOpening([](json& d) { d["mesh"]["file"] = "mesh.glb"; }), HasSubstr("a folder"));
 }
 
 TEST_F(Gains, RegionsMayBeManyAndHaveNoMasks) {

@@ -17,7 +17,7 @@ std::vector<std::byte> readWeights(const PackageDescription& description, int se
   const PackageWeights& weights = description.weights[static_cast<std::size_t>(set)];
   const int cells = static_cast<int>(description.expressions.size()) * weights.tile_width * weights.tile_height;
   std::vector<std::byte> codes(static_cast<std::size_t>(cells * description.differences));
-  package::readWeightAtlas(description, set, directory,
+  package::readWeightAtlas(description, set, io::Folder(directory),
                            [&](int n, int y, int first, int count, std::span<const std::byte> row) {
                              for (std::size_t b = 0; b < row.size(); ++b) {
                                const int x = static_cast<int>(b) / count, i = first + static_cast<int>(b) % count;

@@ -16,6 +16,10 @@ class InputFile {
   /// cure      what to do where it is not there
   /// Throws InputError: no such file, one that may not be read, something that is no file.
   explicit InputFile(const std::filesystem::path& file, const std::string& expected, const std::string& cure = "");
+  /// The same of a file that was opened for reading, without waiting (O_NONBLOCK).
+  /// descriptor  this object's own from now on; negative where opening failed, and errno says why
+  /// file        for messages
+  InputFile(int descriptor, const std::filesystem::path& file, const std::string& expected, const std::string& cure = "");
   ~InputFile();
   InputFile(InputFile&& other) noexcept;
   InputFile& operator=(InputFile&& other) noexcept;

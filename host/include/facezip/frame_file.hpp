@@ -2,10 +2,13 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
 
+#include "facezip/blend.hpp"
+#include "facezip/memory.hpp"
 #include "facezip/package.hpp"
 #include "facezip/progress.hpp"
 
@@ -45,5 +48,14 @@ class FramePattern {
   int number_width_ = 0;
   bool append_map_ = false;
 };
+
+/// Blends every frame of `clip` for every map of `package`, as Blender does, and writes pattern.file(frame, map). The
+/// package is put on the device where it fits; else rows of its textures stream through in bands, from disk for each
+/// frame: the same bytes, slower.
+/// memory_bytes  what the process may keep resident, host and device together
+/// Throws InputError for damaged images, and a package whose weights alone need more memory; what writeFrame() does;
+/// DeviceError, Cancelled.
+void writeFrames(const Package& package, const AnimationClip& clip, const Gain& gain, const FramePattern& pattern,
+                 const Device& device, Progress& progress, std::uint64_t memory_bytes = kDefaultMemoryBytes);
 
 }  // namespace facezip

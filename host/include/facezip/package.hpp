@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +14,10 @@
 #include "facezip/sample_type.hpp"
 
 namespace facezip {
+
+namespace io {
+class Folder;
+}
 
 /// One difference texture D_i of one map: an image of 8- or 16-bit codes that decode to D_i = scale * code + offset.
 struct PackageDifference {
@@ -91,11 +96,16 @@ class Package {
  public:
   /// Opens the package in `directory` (its package.json is accepted as well) and checks every field of package.json,
   /// and of every image that it exists, has the size, channels and type that package.json says and is not cut short.
-  /// Damage inside an image that keeps its length is found when its texels are read.
+  /// Damage inside an image that keeps its length is found when its texels are read. All files are read from the folder
+  /// that is found now, and stay open as long as the Package lives: it is one package, even while another is renamed to
+  /// its place. Links in it are refused.
   /// Throws InputError that names the file, the field as a JSON path ("maps[0].width"), and what was expected.
   static Package open(const std::filesystem::path& directory);
 
   const std::filesystem::path& directory() const noexcept { return directory_; }
+  /// Whether another package took this one's place. What is read of it is its own, never the other's; of a package of
+  /// more than 256 files some may be gone, and reading them throws InputError: open the package again.
+  bool wasReplaced() const;
   const PackageDescription& description() const noexcept { return description_; }
   const std::string& name() const noexcept { return description_.name; }
   /// N names in the order of the weight vector.
@@ -117,14 +127,35 @@ class Package {
   /// Bytes of all files of the package.
   std::uint64_t bytesOnDisk() const noexcept { return bytes_on_disk_; }
 
+  /// The open folder, for facezip's own sources: all of a package is read from there.
+  const io::Folder& folder() const noexcept { return *folder_; }
+
  private:
   Package() = default;
+  static Package openOnce(const std::filesystem::path& directory);
+
   std::filesystem::path directory_;
+  std::shared_ptr<const io::Folder> folder_;
   PackageDescription description_;
   std::uint64_t bytes_on_disk_ = 0;
 };
 
 /// The package's directory.
 ProtectedPaths inputsOf(const Package& package);
+
+/// Opens a package and returns what `use(package)` does. Where another package takes its place before `use` has read
+/// all that it needs, which it then says by an InputError, the same with that one.
+template <typename Use>
+auto withPackage(const std::filesystem::path& directory, const Use& use) {
+  constexpr int kMostTries = 20;
+  for (int tries = 1;; ++tries) {
+    const Package package = Package::open(directory);
+    try {
+      return use(package);
+    } catch (const InputError&) {
+      if (tries == kMostTries || !package.wasReplaced()) throw;
+    }
+  }
+}
 
 }  // namespace facezip

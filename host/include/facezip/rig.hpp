@@ -13,6 +13,7 @@
 #include "facezip/device.hpp"
 #include "facezip/geometry/example_rig.hpp"
 #include "facezip/named_value.hpp"
+#include "facezip/package.hpp"
 #include "facezip/progress.hpp"
 
 namespace facezip {
@@ -106,8 +107,9 @@ struct Rig {
 };
 
 /// True if the package is a rig's.
-bool isRig(const std::filesystem::path& package);
+bool isRig(const Package& package);
 /// Reads rig.json. Throws InputError naming the field that is wrong.
+Rig openRig(const Package& package);
 Rig openRig(const std::filesystem::path& package);
 
 struct SolveWeightsOptions {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "facezip/input_file.hpp"
 #include "facezip/package.hpp"
 #include "facezip/progress.hpp"
 
@@ -18,6 +19,14 @@ const std::map<std::string_view, std::string_view>& viewerPage();
 
 /// Names of the files of a package, each once, relative to it, package.json first: what a page may read.
 std::vector<std::string> packageFiles(const Package& package);
+
+/// One of them, open: it stays what it is whatever takes its place in the folder.
+struct OpenPackageFile {
+  std::string name;
+  InputFile file;
+};
+/// Opens all of them. Throws InputError.
+std::vector<OpenPackageFile> openPackageFiles(const Package& package);
 
 /// Writes a folder whose index.html shows the package in a browser, from a server or straight from disk: browsers let
 /// no page fetch files from disk, so that the package's are written as scripts. The folder appears whole or not at all;

@@ -41,6 +41,7 @@ BandBlender::BandBlender(const Package& package, int map_index, const WeightSets
 }
 
 BandBlender::~BandBlender() = default;
+BandBlender::BandBlender(BandBlender&&) noexcept = default;
 
 int BandBlender::rowsWithin(std::size_t bytes) const {
   // Tiles on the device and a frame of padded rows; what is read at once is small beside them.

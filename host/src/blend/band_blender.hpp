@@ -22,6 +22,7 @@ class BandBlender {
   /// Throws InputError, DeviceError.
   BandBlender(const Package& package, int map_index, const WeightSets& weights, const Device& device);
   ~BandBlender();
+  BandBlender(BandBlender&&) noexcept;
 
   /// Rows, a multiple of rowStep(), whose textures and frame of blend() take at most `bytes` on host and device
   /// together; values take 4 bytes a sample in place of the neutral's.

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "blend/frame_writer.hpp"
 #include "image/image_file.hpp"
 #include "image/output_formats.hpp"
 #include "io/write_file.hpp"
@@ -16,13 +17,13 @@ namespace fs = std::filesystem;
 namespace {
 
 void writeWhole(const fs::path& file, const image::ImageShape& shape, const std::string& colour_space,
-                std::span<const std::byte> samples, Progress* progress) {
+                Progress* progress, const std::function<void(image::ImageWriter& writer)>& write) {
   image::requireFormat(file, shape);
   io::createDirectories(fs::absolute(file).parent_path());
   io::StagedFile staged(file, progress);
   try {
     image::ImageWriter writer(staged.path(), shape, colour_space);
-    writer.writeRows(samples, shape.height);
+    write(writer);
     writer.close();
   } catch (const OutputError& error) {
     throw error.of(file);
@@ -33,11 +34,17 @@ void writeWhole(const fs::path& file, const image::ImageShape& shape, const std:
 }  // namespace
 
 void writeFrame(const fs::path& file, const PackageMap& map, std::span<const std::byte> frame, Progress* progress) {
-  writeWhole(file, package::neutralShape(map), map.colour_space, frame, progress);
+  blend::writeFrameBy(file, map, progress, [&](image::ImageWriter& writer) { writer.writeRows(frame, map.height); });
+}
+
+void blend::writeFrameBy(const fs::path& file, const PackageMap& map, Progress* progress,
+                         const std::function<void(image::ImageWriter& writer)>& write) {
+  writeWhole(file, package::neutralShape(map), map.colour_space, progress, write);
 }
 
 void writePicture(const fs::path& file, int width, int height, std::span<const std::byte> samples) {
-  writeWhole(file, {width, height, 3, SampleType::kUint8}, "", samples, nullptr);
+  writeWhole(file, {width, height, 3, SampleType::kUint8}, "", nullptr,
+             [&](image::ImageWriter& writer) { writer.writeRows(samples, height); });
 }
 
 FramePattern::FramePattern(std::string pattern, bool numbered, std::size_t maps) : pattern_(std::move(pattern)) {

@@ -11,6 +11,7 @@
 #include "io/read_file.hpp"
 #include "package/guides.hpp"
 #include "package/json_field.hpp"
+#include "package/package_files.hpp"
 #include "package/package_json.hpp"
 
 namespace facezip {
@@ -50,7 +51,8 @@ void readFactors(const package::JsonField& field, const std::vector<std::string>
 /// 1 + sum over regions of (gain - 1) R, on the cells of the masks.
 std::vector<float> gainOfMaskCells(const Package& package, const std::vector<float>& regions) {
   const PackageMasks& masks = *package.description().masks;
-  const image::Image picture = image::readImage(package.directory() / masks.file);
+  const image::Image picture =
+      image::readImage(package::openImage(package.folder(), masks.file, package::masksShape(masks)));
   std::vector<float> gain(toSize(masks.tile_width * masks.tile_height), 1.0f);
   for (std::size_t r = 0; r < regions.size(); ++r) {
     if (regions[r] == 1.0f) continue;

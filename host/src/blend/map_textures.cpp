@@ -12,10 +12,15 @@
 namespace facezip::blend {
 namespace {
 
-/// Rows read at a time: enough to spread over threads, small beside a map.
-constexpr int kRowsAtOnce = 8 * kTileRows;
+/// Bytes of rows read at a time: enough to spread over threads, small beside a map.
+constexpr std::size_t kBytesAtOnce = std::size_t{16} << 20;
+constexpr std::size_t kMostTileRows = 8;
 
 }  // namespace
+
+int rowsAtOnce(const TextureShape& shape) {
+  return static_cast<int>(std::clamp<std::size_t>(kBytesAtOnce / shape.tilesBytes(), 1, kMostTileRows)) * kTileRows;
+}
 
 TextureShape textureShape(const PackageMap& map, int differences) {
   TextureShape shape;
@@ -39,17 +44,18 @@ TextureShape textureShape(const PackageMap& map, int differences) {
 
 MapReader::MapReader(const Package& package, int map_index) {
   const PackageMap& map = package.maps()[toSize(map_index)];
-  images_.push_back(package::openImage(package.directory() / map.neutral_file, package::neutralShape(map)));
+  images_.push_back(package::openImage(package.folder(), map.neutral_file, package::neutralShape(map)));
   for (const PackageDifference& difference : map.differences) {
-    images_.push_back(package::openImage(package.directory() / difference.file, package::differenceShape(map)));
+    images_.push_back(package::openImage(package.folder(), difference.file, package::differenceShape(map)));
   }
   row_bytes_.resize(images_.size());
 }
 
 void MapReader::load(TextureRows& textures) {
   std::vector<std::span<const std::byte>> differences(images_.size() - 1);
-  for (int first = textures.begin(); first < textures.end(); first += kRowsAtOnce) {
-    const int rows = std::min(kRowsAtOnce, textures.end() - first);
+  const int most_rows = rowsAtOnce(textures.shape());
+  for (int first = textures.begin(); first < textures.end(); first += most_rows) {
+    const int rows = std::min(most_rows, textures.end() - first);
     tbb::parallel_for(std::size_t{0}, images_.size(), [&](std::size_t i) {
       row_bytes_[i].resize(toSize(rows) * images_[i].shape().rowBytes());
       images_[i].readRows(first, first + rows, row_bytes_[i]);
@@ -67,7 +73,7 @@ std::shared_ptr<WeightMaps> loadWeightSet(const Package& package, int set, devic
                          weights.scale, weights.offset};
   std::vector<std::byte> codes(grid.codeBytes());
   package::readWeightAtlas(
-      package.description(), set, package.directory(),
+      package.description(), set, package.folder(),
       [&](int expression, int cell_row, int first_channel, int row_channels, std::span<const std::byte> row) {
         const std::size_t first_cell = grid.cell(cell_row, 0);
         const std::size_t channels = toSize(row_channels);

@@ -14,6 +14,9 @@ namespace facezip::blend {
 /// The encoding and shape of a map's textures as the kernel wants them: differences in steps of the neutral's samples.
 TextureShape textureShape(const PackageMap& map, int differences);
 
+/// Rows of the images of a map that are read at a time, a multiple of kTileRows.
+int rowsAtOnce(const TextureShape& shape);
+
 /// Opens neutral and differences of one map and streams their rows.
 class MapReader {
  public:

@@ -7,9 +7,11 @@
 #include <vector>
 
 #include "blend/band_blender.hpp"
+#include "blend/blend_memory.hpp"
 #include "blend/names.hpp"
 #include "image/image_file.hpp"
 #include "io/counts.hpp"
+#include "io/memory_bound.hpp"
 #include "io/staged_directory.hpp"
 #include "package/package_files.hpp"
 #include "package/package_json.hpp"
@@ -18,10 +20,27 @@ namespace facezip {
 namespace fs = std::filesystem;
 namespace {
 
-/// Textures of a band and one frame of it; images of any height pass through.
-constexpr std::size_t kBandBytes = std::size_t{256} << 20;
+/// Larger bands gain nothing.
+constexpr std::uint64_t kUsefulBandBytes = std::uint64_t{256} << 20;
 /// Image files open at once: a process may hold 1024 by default. More expressions take another pass over the textures.
-constexpr std::size_t kFilesAtOnce = 200;
+constexpr std::uint64_t kMostFiles = 200;
+
+/// How the memory that is left is shared; images of any height pass through.
+struct Share {
+  std::uint64_t band_bytes;  ///< textures of a band and one frame of it
+  std::size_t files_at_once;
+};
+
+/// Throws InputError where a band of one row of tiles, and one file, do not fit.
+Share shareMemory(const Package& package, const PackageMap& map, std::uint64_t memory_bytes) {
+  const std::uint64_t beside = blend::weightBytes(package) + blend::stagingBytes(map, package.differences());
+  const std::uint64_t file = blend::writerBytes(map);
+  const std::uint64_t least = beside + file + blend::bandBytes(map, package.differences());
+  io::requireMemory(least, memory_bytes, "map " + map.name + " of " + package.directory().string());
+  const std::uint64_t left = memory_bytes - io::kProcessBytes - beside;
+  const std::uint64_t band = std::clamp(left / 2, blend::bandBytes(map, package.differences()), kUsefulBandBytes);
+  return {band, static_cast<std::size_t>(std::clamp<std::uint64_t>((left - band) / file, 1, kMostFiles))};
+}
 
 std::vector<int> chosenExpressions(const Package& package, std::span<const std::string> names) {
   std::vector<int> chosen;
@@ -50,9 +69,10 @@ std::vector<image::ImageWriter> openWriters(const Package& package, const Packag
 
 /// One pass over the textures of a map, for a few expressions.
 void reconstructMap(const Package& package, const PackageMap& map, blend::BandBlender& blender,
-                    std::span<const int> expressions, const fs::path& folder, Progress& progress, std::size_t& done) {
+                    std::uint64_t band_bytes, std::span<const int> expressions, const fs::path& folder,
+                    Progress& progress, std::size_t& done) {
   std::vector<image::ImageWriter> writers = openWriters(package, map, expressions, folder);
-  const int band_rows = blender.rowsWithin(kBandBytes);
+  const int band_rows = blender.rowsWithin(band_bytes);
   std::vector<float> beta(package.expressions().size(), 0.0f);
   std::vector<std::byte> frame;
   for (int begin = 0; begin < map.height; begin += band_rows) {
@@ -100,8 +120,10 @@ void requireNoCapture(const Package& package, const fs::path& output) {
 }  // namespace
 
 void reconstruct(const Package& package, const fs::path& output, std::span<const std::string> expressions,
-                 const Device& device, Progress& progress) {
+                 const Device& device, Progress& progress, std::uint64_t memory_bytes) {
   const std::vector<int> chosen = chosenExpressions(package, expressions);
+  std::vector<Share> shares;  // before any work
+  for (const PackageMap& map : package.maps()) shares.push_back(shareMemory(package, map, memory_bytes));
   requireNoCapture(package, output);
   const ProtectedPaths inputs = inputsOf(package);
   inputs.requireApart(output);
@@ -114,10 +136,10 @@ void reconstruct(const Package& package, const fs::path& output, std::span<const
     const PackageMap& map = package.maps()[m];
     io::createDirectories(staged.path() / map.name);
     blend::BandBlender blender(package, static_cast<int>(m), weights, device);
-    for (std::size_t begin = 0; begin < chosen.size(); begin += kFilesAtOnce) {
-      const std::size_t count = std::min(kFilesAtOnce, chosen.size() - begin);
-      reconstructMap(package, map, blender, std::span(chosen).subspan(begin, count), staged.path() / map.name, progress,
-                     done);
+    for (std::size_t begin = 0; begin < chosen.size(); begin += shares[m].files_at_once) {
+      const std::size_t count = std::min(shares[m].files_at_once, chosen.size() - begin);
+      reconstructMap(package, map, blender, shares[m].band_bytes, std::span(chosen).subspan(begin, count),
+                     staged.path() / map.name, progress, done);
     }
   }
   staged.commit();

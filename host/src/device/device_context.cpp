@@ -21,6 +21,12 @@ std::string cacheKey(const cl::Device& device, const DeviceInfo& info, const std
                      options, source);
 }
 
+/// What every program is built with. clang describes the restrict of inlined functions by an intrinsic that Oclgrind
+/// does not know, and then refuses the kernel.
+std::string commonOptions(const DeviceInfo& info) {
+  return info.platform == "Oclgrind" ? "-cl-std=CL1.2 -D restrict=" : "-cl-std=CL1.2";
+}
+
 /// The program of a kept binary; none when the driver refuses it.
 std::optional<cl::Program> fromBinary(const cl::Context& context, const cl::Device& device,
                                       const std::vector<unsigned char>& binary, const std::string& options) {
@@ -65,7 +71,8 @@ cl::Program DeviceContext::buildProgram(std::string_view file_name, const std::s
   if (progress_ != nullptr) progress_->busy(fmt::format("compiling kernels ({})", file_name));
   cl::Program program(context_, source);
   program.build({device_}, options.c_str());
-  cache_.store(key, binaryOf(program));
+  // Asked for alone where it is kept: for its binary PoCL compiles every kernel once more, for groups of any size.
+  if (cache_.keeps()) cache_.store(key, binaryOf(program));
   return program;
 }
 
@@ -75,7 +82,8 @@ cl::Kernel DeviceContext::kernel(std::string_view file_name, std::string_view na
   auto found = programs_.find(key);
   try {
     if (found == programs_.end()) {
-      found = programs_.emplace(key, buildProgram(file_name, fmt::format("-cl-std=CL1.2 {}", defines))).first;
+      found =
+          programs_.emplace(key, buildProgram(file_name, fmt::format("{} {}", commonOptions(info_), defines))).first;
     }
     return cl::Kernel(found->second, std::string(name).c_str());
   } catch (const cl::BuildError& error) {
@@ -102,6 +110,12 @@ std::size_t DeviceContext::workGroupSize(const cl::Kernel& kernel, std::size_t w
   const std::size_t allowed =
       std::min(info_.largest_work_group, kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device_));
   return std::bit_floor(std::max<std::size_t>(1, std::min(wanted, allowed)));
+}
+
+std::size_t DeviceContext::groupOf(const cl::Kernel& kernel, std::size_t count) const {
+  std::size_t group = std::min(count, workGroupSize(kernel, 256));
+  while (count % group != 0) --group;
+  return group;
 }
 
 cl::Buffer DeviceContext::allocate(std::size_t bytes, cl_mem_flags flags, std::string_view what) const {

@@ -39,7 +39,7 @@ namespace facezip::device {
 enum class KernelVariant { kAuto, kCpu, kGpu };
 
 /// How many work-items run along one to three axes, and how many form a group:
-///   WorkItems(tiles, expressions)                   the driver chooses the groups
+///   WorkItems(tiles, expressions)                   the driver chooses the groups: only where each size runs once
 ///   WorkItems(tiles, expressions).inGroupsOf(1, 1)
 class WorkItems {
  public:
@@ -106,6 +106,11 @@ class DeviceContext {
 
   /// Largest power-of-two work-group size that the device and `kernel` allow, at most `wanted`.
   std::size_t workGroupSize(const cl::Kernel& kernel, std::size_t wanted) const;
+
+  /// Largest work-group along an axis of `count` work-items: as many as divide them, at most 256 and what the device
+  /// and `kernel` allow. PoCL compiles a kernel anew for every size of its groups, and where it may choose, it chooses
+  /// by all axes: so this takes the one axis that a program fixes.
+  std::size_t groupOf(const cl::Kernel& kernel, std::size_t count) const;
 
   /// Allocates; `what` names the buffer in the DeviceError that is thrown when `bytes` exceeds the device's largest
   /// allocation or the allocation fails. A size of 0 gives a buffer of one byte, since OpenCL has no empty ones.

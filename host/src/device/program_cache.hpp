@@ -20,6 +20,9 @@ class ProgramCache {
   /// FACEZIP_CACHE_DIR (set but empty: none), else XDG_CACHE_HOME/facezip, else HOME/.cache/facezip, else none.
   static ProgramCache ofUser();
 
+  /// False for a cache that holds nothing.
+  bool keeps() const { return !folder_.empty(); }
+
   /// The binary that was kept under `key`; none when there is none or its file is damaged.
   /// key  all that decides what the binary is: device, driver, options and source, in full
   std::optional<std::vector<unsigned char>> find(std::string_view key) const;

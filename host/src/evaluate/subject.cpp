@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <unordered_map>
 
 #include "compress/band_plan.hpp"
 #include "compress/bands/map_bands.hpp"
@@ -24,17 +25,19 @@ struct RiggedExpressions {
 };
 
 RiggedExpressions riggedExpressions(const Capture& capture, const Package& package, bool shapes) {
-  const Rig rig = openRig(package.directory());
+  const Rig rig = openRig(package);
   const auto indexIn = [](const std::vector<std::string>& names, const std::string& name) {
     const auto found = std::find(names.begin(), names.end(), name);
     return found == names.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - names.begin()));
   };
+  std::unordered_map<std::string, std::size_t> packed_index;  // a million weights are looked up in the worst case
+  for (const std::string& name : package.expressions()) packed_index.emplace(name, packed_index.size());
   const auto inPackage = [&](const std::string& name) {
-    const std::optional<std::size_t> index = indexIn(package.expressions(), name);
-    if (!index) {
+    const auto index = packed_index.find(name);
+    if (index == packed_index.end()) {
       throw InputError({packageFile(package), "expressions", "the names of rig.json", "no " + name, "make it again"});
     }
-    return *index;
+    return index->second;
   };
   RiggedExpressions found;
   for (std::size_t e = 0; e < capture.expressions.size(); ++e) {
@@ -101,7 +104,7 @@ Capture matchingCapture(const Capture& capture, const Package& package, bool rig
 
 Subject makeSubject(const Capture& capture, const Package& package, std::uint64_t memory_bytes, bool shapes,
                     const Device& device, Progress& progress) {
-  const bool rigged = isRig(package.directory());
+  const bool rigged = isRig(package);
   if (shapes && !rigged) {
     throw InputError({package.directory().string(), "--shapes", "a package that `facezip rig` made", "another", ""});
   }

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstring>
 #include <set>
-#include <span>
 #include <string_view>
 
-#include "image/image_file.hpp"
+#include "export/texture_copy.hpp"
+#include "package/package_files.hpp"
 #include "package/package_json.hpp"
+#include "package/weight_atlas.hpp"
 
 namespace facezip::exporting {
 namespace fs = std::filesystem;
@@ -66,36 +66,12 @@ EngineDifference engineDifference(const PackageMap& map, const PackageDifference
   return engine;
 }
 
-image::Image readBytes(const fs::path& file) {
-  image::Image image = image::readImage(file);
-  if (image.shape.type != SampleType::kUint16) return image;
-  const std::size_t count = image.samples.size() / 2;
-  for (std::size_t i = 0; i < count; ++i) {
-    std::uint16_t code = 0;
-    std::memcpy(&code, image.samples.data() + 2 * i, 2);
-    image.samples[i] = static_cast<std::byte>((code + 128u) / 257u);
+std::vector<PackageImage> differencesOf(const EngineMap& map) {
+  std::vector<PackageImage> images;
+  for (const PackageDifference& difference : map.map.differences) {
+    images.push_back({difference.file, package::differenceShape(map.map)});
   }
-  image.samples.resize(count);
-  image.shape.type = SampleType::kUint8;
-  return image;
-}
-
-/// Writes an image rows at a time: large ones take longer than somebody waits who pressed Ctrl-C.
-void writeTexture(const fs::path& file, const image::Image& image, Progress& progress) {
-  constexpr int kRowsAtOnce = 64;
-  progress.stage("writing " + file.filename().string(), static_cast<std::size_t>(image.shape.height));
-  image::ImageWriter writer(file, image.shape);
-  const std::size_t row_bytes = image.shape.rowBytes();
-  for (int row = 0; row < image.shape.height; row += kRowsAtOnce) {
-    progress.checkCancelled();
-    const int rows = std::min(kRowsAtOnce, image.shape.height - row);
-    writer.writeRows(
-        std::span(image.samples)
-            .subspan(static_cast<std::size_t>(row) * row_bytes, static_cast<std::size_t>(rows) * row_bytes),
-        rows);
-    progress.advance(static_cast<std::size_t>(row + rows));
-  }
-  writer.close();
+  return images;
 }
 
 }  // namespace
@@ -135,13 +111,14 @@ void requireMaps(const Package& package, const std::vector<EngineMap>& maps) {
 }
 
 void writeNeutral(const Package& package, const EngineMap& map, const fs::path& folder, Progress& progress) {
-  writeTexture(folder / (map.id + "_neutral.png"), readBytes(package.directory() / map.map.neutral_file), progress);
+  copyTexture(package, {map.map.neutral_file, package::neutralShape(map.map)}, folder / (map.id + "_neutral.png"),
+              progress);
 }
 
 void writeDifferences(const Package& package, const EngineMap& map, const fs::path& folder, Progress& progress) {
-  for (std::size_t i = 0; i < map.map.differences.size(); ++i) {
-    writeTexture(folder / fmt::format("{}_difference_{}.png", map.id, i),
-                 readBytes(package.directory() / map.map.differences[i].file), progress);
+  const std::vector<PackageImage> images = differencesOf(map);
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    copyTexture(package, images[i], folder / fmt::format("{}_difference_{}.png", map.id, i), progress);
   }
 }
 
@@ -161,21 +138,8 @@ StackLayout stackLayout(const Package& package, const EngineMap& map) {
 }
 
 void writeStack(const Package& package, const EngineMap& map, const fs::path& folder, Progress& progress) {
-  const StackLayout layout = stackLayout(package, map);
-  image::ImageShape shape{layout.columns * map.map.width, layout.rows * map.map.height, map.map.channels,
-                          SampleType::kUint8};
-  image::Image stack{shape, std::vector<std::byte>(shape.rowBytes() * static_cast<std::size_t>(shape.height))};
-  for (std::size_t i = 0; i < map.map.differences.size(); ++i) {
-    const image::Image one = readBytes(package.directory() / map.map.differences[i].file);
-    const std::size_t row_bytes = one.shape.rowBytes();
-    const auto columns = static_cast<std::size_t>(layout.columns);
-    const auto height = static_cast<std::size_t>(one.shape.height);
-    for (std::size_t y = 0; y < height; ++y) {
-      const std::size_t to = (i / columns * height + y) * shape.rowBytes() + i % columns * row_bytes;
-      std::memcpy(stack.samples.data() + to, one.samples.data() + y * row_bytes, row_bytes);
-    }
-  }
-  writeTexture(folder / (map.id + "_differences.png"), stack, progress);
+  copyTextures(package, differencesOf(map), stackLayout(package, map).columns, folder / (map.id + "_differences.png"),
+               progress);
 }
 
 std::vector<int> usedSets(const std::vector<EngineMap>& maps) {
@@ -187,10 +151,10 @@ std::vector<int> usedSets(const std::vector<EngineMap>& maps) {
 void writeWeights(const Package& package, const std::vector<EngineMap>& maps, const fs::path& folder,
                   Progress& progress) {
   for (const int set : usedSets(maps)) {
-    const std::vector<std::string>& files = package.weightSets()[static_cast<std::size_t>(set)].files;
-    for (std::size_t f = 0; f < files.size(); ++f) {
-      writeTexture(folder / fmt::format("weights_{}_{}.png", set, f), image::readImage(package.directory() / files[f]),
-                   progress);
+    const PackageWeights& weights = package.weightSets()[static_cast<std::size_t>(set)];
+    for (std::size_t f = 0; f < weights.files.size(); ++f) {
+      const image::ImageShape shape = package::atlasShape(weights, package.differences(), static_cast<int>(f));
+      copyTexture(package, {weights.files[f], shape}, folder / fmt::format("weights_{}_{}.png", set, f), progress);
     }
   }
 }

@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <system_error>
+#include <string_view>
 
 #include "export/engine_maps.hpp"
 #include "export/export_files.hpp"
@@ -15,6 +16,8 @@
 #include "export/unreal.hpp"
 #include "facezip/check.hpp"
 #include "facezip/view.hpp"
+#include "io/file_pieces.hpp"
+#include "io/folder.hpp"
 #include "io/staged_directory.hpp"
 #include "package/package_json.hpp"
 
@@ -48,15 +51,22 @@ const std::map<std::string, Target>& targets() {
   return all;
 }
 
-void copyPackage(const Package& package, const fs::path& folder, Progress& progress) {
-  checkTexels(package, progress);
+void copyFile(const Package& package, const std::string& name, const fs::path& to) {
+  const InputFile file = package.folder().open(name, "a file of the package");
+  std::ofstream out(to, std::ios::binary);
+  io::forEachPiece(file, (package.directory() / name).string(), std::size_t{1} << 20,
+                   [&](std::string_view piece) { out << piece; });
+  out.close();
+  if (!out) throw OutputError(to, "could not be written", "is the disk full?");
+}
+
+void copyPackage(const Package& package, const fs::path& folder, std::uint64_t memory_bytes, Progress& progress) {
+  checkTexels(package, progress, memory_bytes);
   for (const std::string& name : packageFiles(package)) {
     progress.checkCancelled();
     const fs::path to = folder / name;
     io::createDirectories(to.parent_path());
-    std::error_code error;
-    fs::copy_file(package.directory() / name, to, error);
-    if (error) throw OutputError(to, error.message());
+    copyFile(package, name, to);
   }
 }
 
@@ -92,7 +102,7 @@ std::vector<std::string> exportTargets() {
 }
 
 std::vector<std::string> exportPackage(const Package& package, const std::string& target, const fs::path& output,
-                                       Progress& progress) {
+                                       Progress& progress, std::uint64_t memory_bytes) {
   const auto found = targets().find(target);
   if (found == targets().end()) {
     throw InputError({"--target", "", fmt::format("{}", fmt::join(exportTargets(), ", ")), target, ""});
@@ -108,9 +118,9 @@ std::vector<std::string> exportPackage(const Package& package, const std::string
   if (chosen.write != nullptr) {
     chosen.write(package, staged.path(), progress);
   } else {
-    copyPackage(package, staged.path() / "package", progress);
+    copyPackage(package, staged.path() / "package", memory_bytes, progress);
   }
-  exporting::addBlendToGltf(package.directory() / description.mesh_file, staged.path() / "scene.gltf",
+  exporting::addBlendToGltf(mesh::readPackageMesh(package, memory_bytes), staged.path() / "scene.gltf",
                             plainMaterial(package, chosen.textures));
   for (const std::string& file : chosen.files) {
     const std::string name = file.ends_with(".md") ? "README.md" : file;

@@ -310,13 +310,17 @@ void writeGltf(const fs::path& file, const GltfScene& scene) {
   save(model, file);
 }
 
-void addBlendToGltf(const fs::path& from, const fs::path& to, const GltfMaterial& material) {
+void addBlendToGltf(const mesh::PackageMesh& mesh, const fs::path& to, const GltfMaterial& material) {
+  const std::string file = mesh::packageMeshFile(mesh);
   tinygltf::Model model;
   std::string error, warning;
-  if (!tinygltf::TinyGLTF().LoadBinaryFromFile(&model, &error, &warning, from.string()) || model.materials.empty()) {
-    throw InputError({from.string(), "", "glTF that facezip wrote", error, "write the package again"});
-  }
-  setMaterial(material, model.materials[0], model);
+  tinygltf::TinyGLTF loader;
+  loader.SetFsCallbacks({});  // no file is needed, and none is to be had
+  const bool loaded =
+      loader.LoadBinaryFromMemory(&model, &error, &warning, reinterpret_cast<const unsigned char*>(file.data()),
+                                  static_cast<unsigned int>(file.size()));
+  if (!loaded) throw Error(fmt::format("the mesh of the package cannot be exported: {}", error));
+  setMaterial(material, model.materials.at(0), model);
   save(model, to);
 }
 

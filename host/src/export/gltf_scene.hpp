@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "facezip/geometry/mesh.hpp"
+#include "mesh/package_mesh.hpp"
 
 namespace facezip::exporting {
 
@@ -54,8 +55,7 @@ struct GltfMaterial {
   nlohmann::json extras;            ///< an object, or null for none
 };
 
-/// Writes the glTF file `from` (binary, as writeGltf() writes it) to `to` with this material. Throws InputError for a
-/// file that cannot be read, OutputError.
-void addBlendToGltf(const std::filesystem::path& from, const std::filesystem::path& to, const GltfMaterial& material);
+/// Writes the mesh of a package to `to` (.gltf, with NAME.bin beside it) with this material. Throws OutputError.
+void addBlendToGltf(const mesh::PackageMesh& mesh, const std::filesystem::path& to, const GltfMaterial& material);
 
 }  // namespace facezip::exporting

@@ -98,10 +98,13 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text;
 }
 
-/// ShaderLab's strings have no escapes.
+/// ShaderLab's strings have no escapes, and end where their line does.
 std::string plainName(const std::string& name) {
   std::string plain;
-  for (const char c : name) plain += c == '"' || c == '\\' || c == '/' ? ' ' : c;
+  for (const char c : name) {
+    const bool odd = c == '"' || c == '\\' || c == '/' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
+    plain += odd ? ' ' : c;
+  }
   return plain.empty() ? "face" : plain;
 }
 

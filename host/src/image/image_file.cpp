@@ -45,6 +45,20 @@ ImageReader::ImageReader(fs::path path) : path_(std::move(path)), file_(path_, "
   shape_ = input_->shape();
 }
 
+ImageReader::ImageReader(fs::path path, InputFile file) : path_(std::move(path)), file_(std::move(file)) {
+  if (path_.extension() == ".exr") {
+    input_ = anyFormat().openExr(path_, file_);
+  } else {
+    input_ = openPng(path_, file_);
+  }
+  if (!input_) {
+    throw InputError(
+        {path_.string(), "", "a PNG file",
+         "another, or one with a palette, a transparent colour, interlacing or samples of less than 8 bits", ""});
+  }
+  shape_ = input_->shape();
+}
+
 ImageReader::~ImageReader() = default;
 ImageReader::ImageReader(ImageReader&&) noexcept = default;
 ImageReader& ImageReader::operator=(ImageReader&&) noexcept = default;
@@ -82,8 +96,9 @@ void ImageWriter::close() {
   output_.reset();
 }
 
-Image readImage(const fs::path& path) {
-  ImageReader reader(path);
+Image readImage(const fs::path& path) { return readImage(ImageReader(path)); }
+
+Image readImage(ImageReader reader) {
   Image image{reader.shape(), {}};
   image.samples.resize(static_cast<std::size_t>(image.shape.height) * image.shape.rowBytes());
   reader.readRows(0, image.shape.height, image.samples);

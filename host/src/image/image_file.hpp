@@ -47,12 +47,17 @@ class ImageReader {
   /// Opens `path`. Throws InputError if it is missing, no regular file, unreadable or of a kind that OpenImageIO does
   /// not know. The file stays open: what is renamed over it later is not read.
   explicit ImageReader(std::filesystem::path path);
+  /// Reads an image of a package, by the reader that its name asks for and no other: PNG whose samples are stored as
+  /// they are, or EXR. It may come from anywhere, and claim any size: memory is not taken by it before rows are read.
+  /// path  for messages. Throws InputError.
+  ImageReader(std::filesystem::path path, InputFile file);
   ~ImageReader();
   ImageReader(ImageReader&&) noexcept;
   ImageReader& operator=(ImageReader&&) noexcept;
 
   const ImageShape& shape() const { return shape_; }
   const std::filesystem::path& path() const { return path_; }
+  const InputFile& file() const { return file_; }
 
   /// Reads rows [begin, end) into `out` (row-major, channels interleaved, exactly (end - begin) * rowBytes()).
   /// Bands in rising order are read once; going back re-reads compressed files from their start.
@@ -95,6 +100,7 @@ struct Image {
   std::vector<std::byte> samples;  ///< row-major, channels interleaved
 };
 Image readImage(const std::filesystem::path& path);
+Image readImage(ImageReader reader);
 void writeImage(const std::filesystem::path& path, const Image& image, const std::string& colour_space = "");
 /// One sample, 1 at full scale. index  into the samples, not the bytes
 float sampleAt(const Image& image, std::size_t index);

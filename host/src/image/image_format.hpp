@@ -49,6 +49,8 @@ class AnyFormat {
   /// file  is read; must outlive what is returned
   /// Throws InputError.
   virtual std::unique_ptr<SampleInput> open(const std::filesystem::path& path, const InputFile& file) = 0;
+  /// An EXR file as packages hold them, and no other: one flat image in rows. path  for messages. Throws InputError.
+  virtual std::unique_ptr<SampleInput> openExr(const std::filesystem::path& path, const InputFile& file) = 0;
   /// path, shape  that requireFormat() lets pass. Throws OutputError.
   virtual std::unique_ptr<SampleOutput> create(const std::filesystem::path& path, const ImageShape& shape,
                                                const std::string& colour_space) = 0;

@@ -82,12 +82,28 @@ std::unique_ptr<OIIO::ImageInput> openInput(const fs::path& path, const std::str
   return input;
 }
 
+std::string openName(const InputFile& file) { return fmt::format("/proc/self/fd/{}", file.descriptor()); }
+
+/// By the reader of EXR alone: others might take the file for what it is not.
+std::unique_ptr<OIIO::ImageInput> openExrInput(const fs::path& path, const std::string& open_name) {
+  const auto fail = [&](const std::string& got) {
+    throw InputError({path.string(), "", "an EXR file", replaced(got, open_name, path.filename().string()), ""});
+  };
+  std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create("openexr", /*do_open=*/false);
+  if (!input) fail(reason(OIIO::geterror()));
+  OIIO::ImageSpec spec;
+  if (!input->open(open_name, spec)) fail(reason(input->geterror()));
+  if (spec.tile_width > 0) fail("tiles, not rows");
+  if (input->seek_subimage(1, 0)) fail("several images in one file");
+  static_cast<void>(input->geterror());  // that there is no other
+  if (!input->seek_subimage(0, 0)) fail(reason(input->geterror()));
+  return input;
+}
+
 class OiioInput : public SampleInput {
  public:
-  OiioInput(const fs::path& path, const InputFile& file)
-      : path_(path),
-        open_name_(fmt::format("/proc/self/fd/{}", file.descriptor())),
-        file_(openInput(path, open_name_)) {
+  OiioInput(const fs::path& path, const InputFile& file, std::unique_ptr<OIIO::ImageInput> opened)
+      : path_(path), open_name_(openName(file)), file_(std::move(opened)) {
     const OIIO::ImageSpec& spec = file_->spec();
     shape_ = {spec.width, spec.height, spec.nchannels, sampleType(spec.format)};
     if (spec.depth > 1 || spec.deep) {
@@ -191,7 +207,11 @@ class OiioOutput : public SampleOutput {
 class OpenImageIo : public AnyFormat {
  public:
   std::unique_ptr<SampleInput> open(const fs::path& path, const InputFile& file) override {
-    return std::make_unique<OiioInput>(path, file);
+    return std::make_unique<OiioInput>(path, file, openInput(path, openName(file)));
+  }
+
+  std::unique_ptr<SampleInput> openExr(const fs::path& path, const InputFile& file) override {
+    return std::make_unique<OiioInput>(path, file, openExrInput(path, openName(file)));
   }
 
   std::unique_ptr<SampleOutput> create(const fs::path& path, const ImageShape& shape,

@@ -117,6 +117,12 @@ std::uint8_t colourTypeOf(int channels) {
   return kTypes[channels - 1];
 }
 
+/// Beyond what a map may have, and what texts and profiles beside the samples need: a few bytes of these may claim, and
+/// unpack to, gigabytes.
+constexpr std::uint32_t kMostTexels = 1 << 16;
+constexpr std::size_t kMostChunkBytes = std::size_t{16} << 20;
+constexpr std::size_t kMostAllChunkBytes = std::size_t{64} << 20;
+
 class PngInput : public SampleInput {
  public:
   /// file  must outlive this object
@@ -132,6 +138,8 @@ class PngInput : public SampleInput {
     if (!context_ || !isPng(source_) || spng_set_png_stream(context_.get(), readSource, &source_) != 0 ||
         // What is not needed for the samples may be damaged.
         spng_set_crc_action(context_.get(), SPNG_CRC_ERROR, SPNG_CRC_DISCARD) != 0 ||
+        spng_set_image_limits(context_.get(), kMostTexels, kMostTexels) != 0 ||
+        spng_set_chunk_limits(context_.get(), kMostChunkBytes, kMostAllChunkBytes) != 0 ||
         !succeeds(spng_get_ihdr(context_.get(), &header)) || succeeds(spng_get_trns(context_.get(), &transparent)) ||
         (header.bit_depth != 8 && header.bit_depth != 16) || header.interlace_method != SPNG_INTERLACE_NONE) {
       return false;
@@ -139,14 +147,15 @@ class PngInput : public SampleInput {
     shape_ = {static_cast<int>(header.width), static_cast<int>(header.height), channelsOf(header.color_type),
               header.bit_depth == 16 ? SampleType::kUint16 : SampleType::kUint8};
     next_row_ = 0;
-    return shape_.channels > 0 &&
-           succeeds(spng_decode_image(context_.get(), nullptr, 0, SPNG_FMT_PNG, SPNG_DECODE_PROGRESSIVE));
+    decoding_ = false;
+    return shape_.channels > 0;
   }
 
   ImageShape shape() const override { return shape_; }
 
   void readRows(int begin, int end, std::span<std::byte> out) override {
     if (begin < next_row_ && !open()) damaged(begin, end, "the file changed");
+    if (!decoding_) startDecoding();
     unused_row_.resize(begin > next_row_ ? shape_.rowBytes() : 0);
     while (next_row_ < begin) readRow(begin, end, unused_row_);
     for (std::size_t offset = 0; next_row_ < end; offset += shape_.rowBytes()) {
@@ -155,6 +164,13 @@ class PngInput : public SampleInput {
   }
 
  private:
+  /// Takes memory by the size that the file claims: not before somebody who has seen it asks for rows.
+  void startDecoding() {
+    const int error = spng_decode_image(context_.get(), nullptr, 0, SPNG_FMT_PNG, SPNG_DECODE_PROGRESSIVE);
+    if (error != 0) damaged("", spng_strerror(error));
+    decoding_ = true;
+  }
+
   bool succeeds(int error) const {
     if (isDamage(error)) damaged("", spng_strerror(error));
     return error == 0;
@@ -180,6 +196,7 @@ class PngInput : public SampleInput {
   Source source_;
   Context context_;  // reads source_: goes before it
   ImageShape shape_;
+  bool decoding_ = false;
   int next_row_ = 0;
   std::vector<std::byte> unused_row_;
 };

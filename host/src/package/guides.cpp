@@ -1,19 +1,17 @@
 #include "package/guides.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstring>
-#include <fstream>
 #include <set>
-#include <system_error>
 
 #include "package/package_files.hpp"
 #include "package/package_json.hpp"
 #include "package/safe_names.hpp"
 
 namespace facezip::package {
-namespace fs = std::filesystem;
 namespace {
 using Document = nlohmann::ordered_json;
 
@@ -64,21 +62,16 @@ std::vector<PackageRegion> parseRegions(const JsonField& field, int mask_count) 
 }
 
 /// The header of glTF's binary form names its own length: a file that was cut does not keep the promise.
-std::uint64_t checkMesh(const fs::path& file) {
+std::uint64_t checkMesh(const io::Folder& folder, const std::string& name) {
+  const InputFile file = folder.open(name, "the mesh of the package", "write the package again");
   std::array<std::uint32_t, 3> header = {};
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream)
-    throw InputError({file.string(), "", "the mesh of the package", "no such file", "write the package again"});
-  stream.read(reinterpret_cast<char*>(header.data()), sizeof(header));
-  std::error_code error;
-  const std::uintmax_t bytes = fs::file_size(file, error);
-  if (error)
-    throw InputError({file.string(), "", "the mesh of the package", error.message(), "write the package again"});
-  if (!stream || std::memcmp(header.data(), "glTF", 4) != 0 || header[1] != 2 || header[2] != bytes) {
-    throw InputError({file.string(), "", "a whole binary glTF 2.0 file", fmt::format("{} bytes that are none", bytes),
+  const bool whole = ::pread(file.descriptor(), header.data(), sizeof(header), 0) == sizeof(header);
+  if (!whole || std::memcmp(header.data(), "glTF", 4) != 0 || header[1] != 2 || header[2] != file.size()) {
+    throw InputError({(folder.path() / name).string(), "", "a whole binary glTF 2.0 file",
+                      fmt::format("{} bytes that are none", file.size()),
                       "the file is truncated or damaged: write the package again"});
   }
-  return bytes;
+  return file.size();
 }
 
 }  // namespace
@@ -106,10 +99,10 @@ image::ImageShape masksShape(const PackageMasks& masks) {
   return {masks.columns * masks.tile_width, masks.rows * masks.tile_height, 1, image::SampleType::kUint8};
 }
 
-std::uint64_t checkGuides(const PackageDescription& description, const fs::path& directory) {
+std::uint64_t checkGuides(const PackageDescription& description, const io::Folder& folder) {
   std::uint64_t bytes = 0;
-  if (!description.mesh_file.empty()) bytes += checkMesh(directory / description.mesh_file);
-  if (description.masks) bytes += checkImage(directory / description.masks->file, masksShape(*description.masks));
+  if (!description.mesh_file.empty()) bytes += checkMesh(folder, description.mesh_file);
+  if (description.masks) bytes += checkImage(folder, description.masks->file, masksShape(*description.masks));
   return bytes;
 }
 

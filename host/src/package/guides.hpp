@@ -2,11 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "facezip/package.hpp"
 #include "image/image_file.hpp"
+#include "io/folder.hpp"
 #include "package/json_field.hpp"
 
 namespace facezip::package {
@@ -25,6 +25,6 @@ void parseGuides(const JsonField& document, PackageDescription& description);
 image::ImageShape masksShape(const PackageMasks& masks);
 
 /// Checks that mesh and masks are there and not cut short. Returns their bytes. Throws InputError that names the file.
-std::uint64_t checkGuides(const PackageDescription& description, const std::filesystem::path& directory);
+std::uint64_t checkGuides(const PackageDescription& description, const io::Folder& folder);
 
 }  // namespace facezip::package

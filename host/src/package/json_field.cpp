@@ -85,6 +85,67 @@ std::string JsonField::got() const {
   return value_.is_string() ? quoted(value_.get<std::string>()) : value_.dump();
 }
 
+namespace {
+
+/// The parser's words, without the middle of what it quotes from the file, which may be all of it.
+std::string shortened(const std::string& words) {
+  constexpr std::size_t kLongest = 240;
+  if (words.size() <= kLongest) return words;
+  return words.substr(0, kLongest / 2) + " ... " + words.substr(words.size() - kLongest / 2);
+}
+
+/// Reads a document without keeping anything of it. Throws InputError for one that parseJson() refuses.
+class Limits : public nlohmann::json_sax<json> {
+ public:
+  Limits(const std::string& file, const std::string& cure) : file_(file), cure_(cure) {}
+
+  bool null() override { return value(); }
+  bool boolean(bool) override { return value(); }
+  bool number_integer(std::int64_t) override { return value(); }
+  bool number_unsigned(std::uint64_t) override { return value(); }
+  bool number_float(double, const std::string&) override { return value(); }
+  bool string(std::string&) override { return value(); }
+  bool binary(json::binary_t&) override { return value(); }
+  bool key(std::string&) override { return true; }
+  bool start_object(std::size_t) override { return begin(); }
+  bool start_array(std::size_t) override { return begin(); }
+  bool end_object() override { return end(); }
+  bool end_array() override { return end(); }
+
+  bool parse_error(std::size_t position, const std::string&, const json::exception& error) override {
+    const bool of_syntax = dynamic_cast<const json::parse_error*>(&error) != nullptr;
+    const std::string item = of_syntax ? fmt::format("byte {}", position) : "";
+    fail(item, of_syntax ? "JSON" : "numbers up to 1.8e308", shortened(error.what()));
+  }
+
+ private:
+  bool value() {
+    // A text of "[],[],..." takes forty times its size.
+    constexpr std::size_t kMostValues = std::size_t{1} << 21;
+    if (++values_ > kMostValues) fail("", fmt::format("at most {} values", kMostValues), "more");
+    return true;
+  }
+  bool begin() {
+    constexpr int kDeepest = 64;
+    if (++depth_ > kDeepest) fail("", fmt::format("at most {} nested levels", kDeepest), "more");
+    return value();
+  }
+  bool end() {
+    --depth_;
+    return true;
+  }
+  [[noreturn]] void fail(const std::string& item, const std::string& expected, const std::string& got) const {
+    throw InputError({file_, item, expected, got, cure_});
+  }
+
+  const std::string& file_;
+  const std::string& cure_;
+  std::size_t values_ = 0;
+  int depth_ = 0;
+};
+
+}  // namespace
+
 std::string quoted(const std::string& text) {
   constexpr std::size_t kLongest = 80;
   std::size_t length = std::min(kLongest, text.size());
@@ -94,18 +155,10 @@ std::string quoted(const std::string& text) {
 }
 
 json parseJson(const std::string& text, const std::string& file, const std::string& cure) {
-  constexpr int kDeepest = 64;
-  const auto limitDepth = [&](int depth, json::parse_event_t, json&) {
-    if (depth > kDeepest) throw InputError({file, "", fmt::format("at most {} nested levels", kDeepest), "more", cure});
-    return true;
-  };
-  try {
-    return json::parse(text, limitDepth);
-  } catch (const json::parse_error& error) {
-    throw InputError({file, fmt::format("byte {}", error.byte), "JSON", error.what(), cure});
-  } catch (const json::out_of_range& error) {  // 1e999
-    throw InputError({file, "", "numbers up to 1.8e308", error.what(), cure});
-  }
+  // Twice: the parser's own way of looking on, a callback, takes quadratic time.
+  Limits limits(file, cure);
+  json::sax_parse(text, &limits);
+  return json::parse(text);
 }
 
 }  // namespace facezip::package

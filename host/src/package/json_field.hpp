@@ -46,8 +46,9 @@ class JsonField {
   std::string cure_;
 };
 
-/// Parses `text`. Throws InputError with the offset of the fault; nesting deeper than 64 is refused, since code that
-/// walks a document by recursion would run out of stack. `cure`: what to do about a fault, where people write the file.
+/// Parses `text`. Throws InputError with the offset of the fault. Nesting deeper than 64 is refused, since code that
+/// walks a document by recursion would run out of stack, and so are more than 2^21 values, which take far more memory
+/// than their text. `cure`: what to do about a fault, where people write the file.
 nlohmann::json parseJson(const std::string& text, const std::string& file,
                          const std::string& cure = "the file is damaged: write it again");
 

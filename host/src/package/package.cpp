@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cerrno>
+#include <chrono>
 #include <system_error>
+#include <thread>
 
-#include "io/read_file.hpp"
+#include "io/folder.hpp"
 #include "package/guides.hpp"
 #include "package/package_files.hpp"
 #include "package/package_json.hpp"
@@ -14,12 +17,18 @@ namespace facezip {
 namespace fs = std::filesystem;
 namespace {
 
-std::string readDescription(const fs::path& file) {
-  constexpr std::uintmax_t kLargest = 64u << 20;  // a package of 65536 expressions stays below
-  std::error_code ignored;
-  if (fs::is_fifo(file, ignored)) throw InputError({file.string(), "", "a file", "a pipe", ""});
-  return io::readFile(file, "the description of a facezip package", "name a directory that `facezip compress` wrote",
-                      kLargest);
+constexpr std::uintmax_t kLargestDescription = 64u << 20;  // a package of 65536 expressions stays below
+constexpr const char* kWhatItIs = "the description of a facezip package";
+constexpr const char* kCure = "name a directory that `facezip compress` wrote";
+
+std::shared_ptr<const io::Folder> openFolder(const fs::path& directory) {
+  try {
+    return std::make_shared<const io::Folder>(directory);
+  } catch (const std::system_error& error) {
+    const int code = error.code().value();
+    const std::string reason = code == ENOENT || code == ENOTDIR ? "no such file" : error.code().message();
+    throw InputError({(directory / package::kDescriptionFile).string(), "", kWhatItIs, reason, kCure});
+  }
 }
 
 }  // namespace
@@ -29,23 +38,40 @@ std::size_t PackageMap::frameBytes() const {
          image::sampleBytes(sample_type);
 }
 
-Package Package::open(const fs::path& directory) {
+Package Package::openOnce(const fs::path& directory) {
   Package package;
-  std::error_code ignored;
-  package.directory_ = directory.filename() == package::kDescriptionFile && !fs::is_directory(directory, ignored)
-                           ? directory.parent_path()
-                           : directory;
-  const fs::path file = package.directory_ / package::kDescriptionFile;
-  const std::string text = readDescription(file);
-  package.description_ = package::parsePackageJson(text, file.string());
-  package.bytes_on_disk_ = text.size() + package::checkImages(package.description_, package.directory_) +
-                           package::checkGuides(package.description_, package.directory_);
+  package.folder_ = openFolder(directory);
+  package.directory_ = directory;
+  const std::string text = package.folder_->open(package::kDescriptionFile, kWhatItIs, kCure).read(kLargestDescription);
+  package.description_ = package::parsePackageJson(text, (directory / package::kDescriptionFile).string());
+  package.bytes_on_disk_ = text.size() + package::checkImages(package.description_, *package.folder_) +
+                           package::checkGuides(package.description_, *package.folder_);
   return package;
 }
 
 ProtectedPaths inputsOf(const Package& package) {
   return ProtectedPaths().add(package.directory(), "the package that is read");
 }
+
+Package Package::open(const fs::path& directory) {
+  std::error_code ignored;
+  const bool is_description =
+      directory.filename() == package::kDescriptionFile && !fs::is_directory(directory, ignored);
+  const fs::path folder = is_description ? directory.parent_path() : directory;
+  // Where another package takes its place, its files go before they are read: then that one is opened.
+  constexpr int kMostTries = 50;
+  for (int tries = 1;; ++tries) {
+    const std::shared_ptr<const io::Folder> before = openFolder(folder);
+    try {
+      return openOnce(folder);
+    } catch (const InputError&) {
+      if (tries == kMostTries || !before->wasReplaced()) throw;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+
+bool Package::wasReplaced() const { return folder_->wasReplaced(); }
 
 int Package::mapIndex(const std::string& map_name) const {
   std::vector<std::string> names;

@@ -1,18 +1,15 @@
 #include "package/package_files.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
-#include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
+#include <utility>
 #include <vector>
 
 #include "package/weight_atlas.hpp"
 
 namespace facezip::package {
-namespace fs = std::filesystem;
 namespace {
 
 std::string describe(const image::ImageShape& shape) {
@@ -22,20 +19,19 @@ std::string describe(const image::ImageShape& shape) {
 
 /// A PNG ends with an empty IEND chunk; a file that was cut anywhere does not. Decoding it all would find that too, at
 /// the price of reading every texel twice.
-bool endsAsPng(const fs::path& file) {
+bool endsAsPng(const InputFile& file) {
   constexpr std::array<char, 12> kEnd = {0, 0, 0, 0, 'I', 'E', 'N', 'D', '\xae', '\x42', '\x60', '\x82'};
   std::array<char, 12> end = {};
-  std::ifstream stream(file, std::ios::binary);
-  stream.seekg(-static_cast<std::streamoff>(end.size()), std::ios::end);
-  return stream.read(end.data(), end.size()) && end == kEnd;
+  if (file.size() < end.size()) return false;
+  const auto offset = static_cast<off_t>(file.size() - end.size());
+  return ::pread(file.descriptor(), end.data(), end.size(), offset) == static_cast<ssize_t>(end.size()) && end == kEnd;
 }
 
 void requireWhole(image::ImageReader& reader) {
-  const std::string cure = "the file is truncated or damaged: write the package again";
   if (reader.path().extension() == ".png") {
-    if (!endsAsPng(reader.path()))
-      throw InputError({reader.path().string(), "", "a whole PNG file", "no IEND at its end", cure});
-    return;
+    if (endsAsPng(reader.file())) return;
+    throw InputError({reader.path().string(), "", "a whole PNG file", "no IEND at its end",
+                      "the file is truncated or damaged: write the package again"});
   }
   // OpenEXR finds rows by a table of offsets: the last rows are missing from a file that was cut, and are cheap to
   // read.
@@ -45,12 +41,12 @@ void requireWhole(image::ImageReader& reader) {
 }
 
 /// Images of a package are not exported again, as those of a capture: the package is written again.
-image::ImageReader openReader(const fs::path& file) {
+image::ImageReader openReader(const io::Folder& folder, const std::string& file) {
+  InputFile opened = folder.open(file, "an image", "the package is damaged: write it again");
   try {
-    return image::ImageReader(file);
+    return image::ImageReader(folder.path() / file, std::move(opened));
   } catch (const InputError& error) {
     InputError::Parts parts = error.parts();
-    if (parts.got == std::strerror(EMFILE) || parts.got == std::strerror(EACCES)) throw;
     parts.cure = "the package is damaged: write it again";
     throw InputError(parts);
   }
@@ -58,10 +54,10 @@ image::ImageReader openReader(const fs::path& file) {
 
 }  // namespace
 
-std::uint64_t checkImage(const fs::path& file, const image::ImageShape& shape) {
-  image::ImageReader reader = openImage(file, shape);
+std::uint64_t checkImage(const io::Folder& folder, const std::string& file, const image::ImageShape& shape) {
+  image::ImageReader reader = openImage(folder, file, shape);
   requireWhole(reader);
-  return fs::file_size(file);
+  return reader.file().size();
 }
 
 image::ImageShape neutralShape(const PackageMap& map) { return {map.width, map.height, map.channels, map.sample_type}; }
@@ -71,27 +67,27 @@ image::ImageShape differenceShape(const PackageMap& map) {
           map.difference_bits == 16 ? image::SampleType::kUint16 : image::SampleType::kUint8};
 }
 
-image::ImageReader openImage(const fs::path& file, const image::ImageShape& shape) {
-  image::ImageReader reader = openReader(file);
+image::ImageReader openImage(const io::Folder& folder, const std::string& file, const image::ImageShape& shape) {
+  image::ImageReader reader = openReader(folder, file);
   if (reader.shape() != shape) {
-    throw InputError({file.string(), "", describe(shape) + " (package.json)", describe(reader.shape()),
+    throw InputError({reader.path().string(), "", describe(shape) + " (package.json)", describe(reader.shape()),
                       "the package was changed: write it again"});
   }
   return reader;
 }
 
-std::uint64_t checkImages(const PackageDescription& description, const fs::path& directory) {
+std::uint64_t checkImages(const PackageDescription& description, const io::Folder& folder) {
   std::uint64_t bytes = 0;
   for (const PackageWeights& weights : description.weights) {
     for (std::size_t file = 0; file < weights.files.size(); ++file) {
-      bytes += checkImage(directory / weights.files[file],
-                          atlasShape(weights, description.differences, static_cast<int>(file)));
+      bytes +=
+          checkImage(folder, weights.files[file], atlasShape(weights, description.differences, static_cast<int>(file)));
     }
   }
   for (const PackageMap& map : description.maps) {
-    bytes += checkImage(directory / map.neutral_file, neutralShape(map));
+    bytes += checkImage(folder, map.neutral_file, neutralShape(map));
     for (const PackageDifference& difference : map.differences) {
-      bytes += checkImage(directory / difference.file, differenceShape(map));
+      bytes += checkImage(folder, difference.file, differenceShape(map));
     }
   }
   return bytes;

@@ -2,10 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
+#include <string>
 
 #include "facezip/package.hpp"
 #include "image/image_file.hpp"
+#include "io/folder.hpp"
 
 namespace facezip::package {
 
@@ -14,13 +15,13 @@ image::ImageShape differenceShape(const PackageMap& map);
 
 /// Opens an image of the package. Throws InputError that names the file when it is missing, unreadable or not of
 /// `shape`.
-image::ImageReader openImage(const std::filesystem::path& file, const image::ImageShape& shape);
+image::ImageReader openImage(const io::Folder& folder, const std::string& file, const image::ImageShape& shape);
 
 /// Opens an image of the package and checks that it is not cut short. Returns its bytes. Throws InputError.
-std::uint64_t checkImage(const std::filesystem::path& file, const image::ImageShape& shape);
+std::uint64_t checkImage(const io::Folder& folder, const std::string& file, const image::ImageShape& shape);
 
 /// Opens every image of `description` and checks its shape and that it is not cut short.
 /// Returns the bytes of all of them. Throws InputError that names the file.
-std::uint64_t checkImages(const PackageDescription& description, const std::filesystem::path& directory);
+std::uint64_t checkImages(const PackageDescription& description, const io::Folder& folder);
 
 }  // namespace facezip::package

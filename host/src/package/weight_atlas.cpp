@@ -8,6 +8,7 @@
 #include <cstring>
 #include <vector>
 
+#include "package/package_files.hpp"
 #include "package/package_json.hpp"
 
 namespace facezip::package {
@@ -82,32 +83,45 @@ void writeWeightAtlas(const PackageDescription& description, int set, const fs::
   }
 }
 
-void readWeightAtlas(const PackageDescription& description, int set, const fs::path& directory,
+namespace {
+
+/// Visits rows of the atlas from `begin` on, without the borders of tiles.
+void visitRows(const PackageWeights& weights, int expressions, int file, const image::ImageShape& shape, int begin,
+               std::span<const std::byte> rows, const WeightRowVisitor& visit) {
+  const int tile_height = weights.tile_height + 2 * weights.border;
+  const std::size_t tile_bytes = size(weights.tile_width + 2 * weights.border) * size(shape.channels);
+  for (std::size_t r = 0; r * shape.rowBytes() < rows.size(); ++r) {
+    const int y = begin + static_cast<int>(r);
+    const int cell_row = y % tile_height - weights.border;
+    if (cell_row < 0 || cell_row >= weights.tile_height) continue;
+    for (int column = 0; column < weights.columns; ++column) {
+      const int n = y / tile_height * weights.columns + column;
+      if (n >= expressions) break;
+      const std::size_t at =
+          r * shape.rowBytes() + size(column) * tile_bytes + size(weights.border) * size(shape.channels);
+      visit(n, cell_row, kFileChannels * file, shape.channels,
+            rows.subspan(at, size(weights.tile_width) * size(shape.channels)));
+    }
+  }
+}
+
+}  // namespace
+
+void readWeightAtlas(const PackageDescription& description, int set, const io::Folder& folder,
                      const WeightRowVisitor& visit) {
+  constexpr std::size_t kBytesAtOnce = std::size_t{1} << 20;
   const PackageWeights& weights = description.weights[size(set)];
   const int expressions = static_cast<int>(description.expressions.size());
   for (int file = 0; file < static_cast<int>(weights.files.size()); ++file) {
-    image::ImageReader reader(directory / weights.files[size(file)]);
     const image::ImageShape shape = atlasShape(weights, description.differences, file);
-    if (reader.shape() != shape) {  // it was checked when the package was opened, so it changed since
-      throw InputError(
-          {reader.path().string(), "", "the image that was there when the package was opened", "another", ""});
-    }
-    const int tile_height = weights.tile_height + 2 * weights.border;
-    const std::size_t tile_bytes = size(weights.tile_width + 2 * weights.border) * size(shape.channels);
-    std::vector<std::byte> rows(size(tile_height) * shape.rowBytes());
-    for (int tile_row = 0; tile_row < weights.rows; ++tile_row) {
-      reader.readRows(tile_row * tile_height, (tile_row + 1) * tile_height, rows);
-      for (int column = 0; column < weights.columns; ++column) {
-        const int n = tile_row * weights.columns + column;
-        if (n >= expressions) break;
-        for (int y = 0; y < weights.tile_height; ++y) {
-          const std::size_t begin = size(y + weights.border) * shape.rowBytes() + size(column) * tile_bytes +
-                                    size(weights.border) * size(shape.channels);
-          visit(n, y, kFileChannels * file, shape.channels,
-                std::span<const std::byte>(rows).subspan(begin, size(weights.tile_width) * size(shape.channels)));
-        }
-      }
+    image::ImageReader reader = openImage(folder, weights.files[size(file)], shape);
+    const int rows_at_once = std::max(1, static_cast<int>(kBytesAtOnce / shape.rowBytes()));
+    std::vector<std::byte> rows;
+    for (int begin = 0; begin < shape.height; begin += rows_at_once) {
+      const int end = std::min(begin + rows_at_once, shape.height);
+      rows.resize(size(end - begin) * shape.rowBytes());
+      reader.readRows(begin, end, rows);
+      visitRows(weights, expressions, file, shape, begin, rows, visit);
     }
   }
 }

@@ -8,6 +8,7 @@
 
 #include "facezip/package.hpp"
 #include "image/image_file.hpp"
+#include "io/folder.hpp"
 
 namespace facezip::package {
 
@@ -28,8 +29,8 @@ void writeWeightAtlas(const PackageDescription& description, int set, const std:
 using WeightRowVisitor = std::function<void(int expression, int cell_row, int first_channel, int row_channels,
                                             std::span<const std::byte> row)>;
 
-/// Reads all atlas files of weights[set], a row of tiles at a time. Throws InputError for a damaged file.
-void readWeightAtlas(const PackageDescription& description, int set, const std::filesystem::path& directory,
+/// Reads all atlas files of weights[set], a few rows at a time. Throws InputError for a damaged file.
+void readWeightAtlas(const PackageDescription& description, int set, const io::Folder& folder,
                      const WeightRowVisitor& visit);
 
 }  // namespace facezip::package

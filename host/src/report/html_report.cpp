@@ -14,8 +14,11 @@
 #include "io/base64.hpp"
 #include "io/read_file.hpp"
 #include "io/scratch_directory.hpp"
+#include "package/guides.hpp"
 #include "package/json_field.hpp"
+#include "package/package_files.hpp"
 #include "package/package_json.hpp"
+#include "package/weight_atlas.hpp"
 #include "report/report_page.hpp"
 
 namespace facezip {
@@ -57,28 +60,30 @@ image::Image errorPicture(const ErrorPictures& pictures, const std::vector<float
   return fromValues(pictures.width, pictures.height, 2, values);
 }
 
-/// The image at no more than kLargestThumbnail a side: means of step x step texels, of fewer where a side is shorter
-/// than that. Opaque: four channels become three.
-image::Image thumbnail(const fs::path& file) {
-  const image::Image picture = image::readImage(file);
-  const image::ImageShape& shape = picture.shape;
+/// An image of the package at no more than kLargestThumbnail a side: means of step x step texels, of fewer where a side
+/// is shorter than that. Opaque: four channels become three. Read some rows at a time: it may be of any size.
+image::Image thumbnail(image::ImageReader reader) {
+  const image::ImageShape& shape = reader.shape();
   const int step = (std::max(shape.width, shape.height) - 1) / kLargestThumbnail + 1;
   const int width = std::max(1, shape.width / step);
   const int height = std::max(1, shape.height / step);
   const int rows = std::min(step, shape.height);
   const int columns = std::min(step, shape.width);
   const int channels = shape.channels < 3 ? 1 : 3;
+  image::Image band{{shape.width, rows, shape.channels, shape.type}, {}};
+  band.samples.resize(static_cast<std::size_t>(rows) * shape.rowBytes());
   std::vector<float> values;
   for (int y = 0; y < height; ++y) {
+    reader.readRows(y * step, y * step + rows, band.samples);
     for (int x = 0; x < width; ++x) {
       for (int c = 0; c < channels; ++c) {
         float sum = 0.0f;
-        for (int row = y * step; row < y * step + rows; ++row) {
+        for (int row = 0; row < rows; ++row) {
           for (int column = x * step; column < x * step + columns; ++column) {
-            sum += image::sampleAt(picture, (static_cast<std::size_t>(row) * static_cast<std::size_t>(shape.width) +
-                                             static_cast<std::size_t>(column)) *
-                                                    static_cast<std::size_t>(shape.channels) +
-                                                static_cast<std::size_t>(c));
+            sum += image::sampleAt(band, (static_cast<std::size_t>(row) * static_cast<std::size_t>(shape.width) +
+                                          static_cast<std::size_t>(column)) *
+                                                 static_cast<std::size_t>(shape.channels) +
+                                             static_cast<std::size_t>(c));
           }
         }
         values.push_back(sum / static_cast<float>(rows * columns));
@@ -91,7 +96,8 @@ image::Image thumbnail(const fs::path& file) {
 /// A colour for each mask, mixed by the masks.
 image::Image maskPicture(const Package& package) {
   const PackageMasks& masks = *package.description().masks;
-  const image::Image tiles = image::readImage(package.directory() / masks.file);
+  const image::Image tiles =
+      image::readImage(package::openImage(package.folder(), masks.file, package::masksShape(masks)));
   std::vector<float> values(static_cast<std::size_t>(masks.tile_width * masks.tile_height * 3), 0.0f);
   for (int k = 0; k < masks.count; ++k) {
     const float turn = static_cast<float>(k) * 0.618034f;
@@ -126,17 +132,22 @@ json picturesJson(const Package& package, const Evaluation& evaluation, const Pi
   for (const ErrorPictures& collected : evaluation.pictures) {
     images["maps"].push_back(comparisonJson(collected, pictures));
   }
-  const auto add = [&](const char* where, const std::string& title, const std::string& file) {
-    images[where].push_back({{"title", title}, {"src", pictures.uri(thumbnail(package.directory() / file))}});
+  const auto add = [&](const char* where, const std::string& title, const std::string& file,
+                       const image::ImageShape& shape) {
+    images[where].push_back(
+        {{"title", title}, {"src", pictures.uri(thumbnail(package::openImage(package.folder(), file, shape)))}});
   };
   for (const PackageMap& map : package.maps()) {
-    add("textures", map.name + ": neutral", map.neutral_file);
+    add("textures", map.name + ": neutral", map.neutral_file, package::neutralShape(map));
     for (std::size_t i = 0; i < map.differences.size(); ++i) {
-      add("textures", fmt::format("{}: difference {}", map.name, i), map.differences[i].file);
+      add("textures", fmt::format("{}: difference {}", map.name, i), map.differences[i].file,
+          package::differenceShape(map));
     }
   }
   for (const PackageWeights& set : package.weightSets()) {
-    for (const std::string& file : set.files) add("weights", file, file);
+    for (std::size_t f = 0; f < set.files.size(); ++f) {
+      add("weights", set.files[f], set.files[f], package::atlasShape(set, package.differences(), static_cast<int>(f)));
+    }
   }
   if (package.description().masks) images["masks"] = pictures.uri(maskPicture(package));
   return images;

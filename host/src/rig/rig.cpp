@@ -91,6 +91,7 @@ RigInputs readInputs(const Capture& capture, const fs::path& template_directory,
   progress.stage("reading the template", 0);
   RigInputs inputs;
   inputs.rig_template = readTemplate(template_directory);
+  requireRigSize(inputs.rig_template.names.size(), capture.expressions.size(), template_directory.string());
   inputs.subject = readSubject(capture, options, progress);
   requireSkin(inputs.rig_template, inputs.subject.neutral, capture.neutral_mesh.string());
   const std::vector<std::string>& shapes = inputs.rig_template.names;

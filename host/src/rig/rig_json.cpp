@@ -2,13 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <system_error>
+#include <unordered_map>
 
 #include "facezip/error.hpp"
 #include "facezip/version.hpp"
-#include "io/read_file.hpp"
+#include "io/folder.hpp"
 #include "package/json_field.hpp"
+#include "package/package_json.hpp"
+#include "package/safe_names.hpp"
 
 namespace facezip {
 namespace rig {
@@ -59,43 +62,94 @@ std::string rigJson(const RigReport& report, double millimetres_per_unit) {
   return document.dump(2) + "\n";
 }
 
-}  // namespace rig
+namespace {
 
-bool isRig(const std::filesystem::path& package) {
-  std::error_code error;
-  return std::filesystem::exists(package / rig::kRigFile, error);
+/// M names in the order of the file, and where each stands in it.
+class ShapeNames {
+ public:
+  explicit ShapeNames(const std::vector<package::JsonField>& fields) {
+    for (const package::JsonField& field : fields) {
+      const std::string name = package::fileSafeName(field);  // names an OBJ file
+      if (!index_.emplace(name, names_.size()).second) field.fail("unique names of shapes", field.got() + " twice");
+      names_.push_back(name);
+    }
+  }
+
+  const std::vector<std::string>& all() const { return names_; }
+
+  std::size_t at(const std::string& name, const package::JsonField& weights) const {
+    const auto found = index_.find(name);
+    if (found == index_.end()) weights.fail("names of shapes", package::quoted(name));
+    return found->second;
+  }
+
+ private:
+  std::vector<std::string> names_;
+  std::unordered_map<std::string, std::size_t> index_;
+};
+
+std::vector<double> parseWeights(const package::JsonField& field, const ShapeNames& shapes) {
+  std::vector<double> weights(shapes.all().size(), 0.0);
+  for (const auto& [shape, weight] : field.object().items()) {
+    weights[shapes.at(shape, field)] = field[shape].number(0.0, 1.0);
+  }
+  return weights;
 }
 
-Rig openRig(const std::filesystem::path& package) {
-  const std::filesystem::path file = package / rig::kRigFile;
-  const std::string text = io::readFile(file, "rig.json of a package that `facezip rig` made");
-  const nlohmann::json document = package::parseJson(text, file.string());
-  const package::JsonField root(document, file.string(), "");
+}  // namespace
+
+void requireRigSize(std::size_t shapes, std::size_t expressions, const std::string& file) {
+  if (shapes <= kMostShapes && shapes * expressions <= kMostRigWeights) return;
+  throw InputError(
+      {file, "shapes",
+       fmt::format("at most {}, and {} weights of {} expressions", kMostShapes, kMostRigWeights, expressions),
+       fmt::format("{}", shapes), ""});
+}
+
+Rig parseRig(const std::string& text, const std::string& file) {
+  const nlohmann::json document = package::parseJson(text, file);
+  const package::JsonField root(document, file, "");
   if (root["format"].text() != "facezip-rig") root["format"].fail("\"facezip-rig\"", root["format"].got());
-  root["version"].integer(rig::kRigVersion, rig::kRigVersion);
+  root["version"].integer(kRigVersion, kRigVersion);
   Rig found;
-  found.directory = package;
   found.millimetres_per_unit = root["millimetres_per_unit"].number(1e-9, 1e9);
   found.skin_vertices = root["skin_vertices"].integer(1, 1 << 30);
-  for (const package::JsonField& name : root["shapes"].elements(1, 65536)) {
-    if (name.text().empty() || name.text().find_first_of("/\\") != std::string::npos || name.text().front() == '.') {
-      name.fail("a name without / and \\", name.got());
-    }
-    found.shapes.push_back(name.text());
-  }
-  for (const package::JsonField& expression : root["expressions"].elements(1, 65536)) {
-    found.package_expressions.push_back(expression["name"].text());
-    found.expressions.push_back(expression["captured"].text());
-    std::vector<double>& weights = found.weights.emplace_back(found.shapes.size(), 0.0);
-    const nlohmann::json& given = expression["weights"].object();
-    for (const auto& [shape, weight] : given.items()) {
-      const auto at = std::find(found.shapes.begin(), found.shapes.end(), shape);
-      if (at == found.shapes.end()) expression["weights"].fail("names of shapes", shape);
-      weights[static_cast<std::size_t>(at - found.shapes.begin())] =
-          package::JsonField(weight, file.string(), expression["weights"].path() + "." + shape).number(0.0, 1.0);
-    }
+  const ShapeNames shapes(root["shapes"].elements(1, kMostShapes));
+  found.shapes = shapes.all();
+  const std::vector<package::JsonField> expressions = root["expressions"].elements(1, package::kMaxExpressions);
+  requireRigSize(found.shapes.size(), expressions.size(), file);
+  for (const package::JsonField& expression : expressions) {
+    found.package_expressions.push_back(package::fileSafeName(expression["name"]));
+    found.expressions.push_back(package::fileSafeName(expression["captured"]));
+    found.weights.push_back(parseWeights(expression["weights"], shapes));
   }
   return found;
+}
+
+}  // namespace rig
+
+namespace {
+
+Rig readRig(const io::Folder& folder) {
+  const InputFile file = folder.open(rig::kRigFile, "rig.json of a package that `facezip rig` made");
+  Rig found = rig::parseRig(file.read(rig::kMostRigBytes), (folder.path() / rig::kRigFile).string());
+  found.directory = folder.path();
+  return found;
+}
+
+}  // namespace
+
+bool isRig(const Package& package) { return package.folder().has(rig::kRigFile); }
+
+Rig openRig(const Package& package) { return readRig(package.folder()); }
+
+Rig openRig(const std::filesystem::path& package) {
+  try {
+    return readRig(io::Folder(package));
+  } catch (const std::system_error& error) {
+    throw InputError({(package / rig::kRigFile).string(), "", "rig.json of a package that `facezip rig` made",
+                      error.code().message(), ""});
+  }
 }
 
 }  // namespace facezip

@@ -26,8 +26,7 @@ Eigen::MatrixXf decodeSet(const Package& package, int set) {
   const Eigen::Index cells = static_cast<Eigen::Index>(weights.tile_width) * weights.tile_height;
   Eigen::MatrixXf decoded(cells * channels, static_cast<Eigen::Index>(description.expressions.size()));
   package::readWeightAtlas(
-      description, set, package.directory(),
-      [&](int n, int row, int first, int count, std::span<const std::byte> codes) {
+      description, set, package.folder(), [&](int n, int row, int first, int count, std::span<const std::byte> codes) {
         for (int x = 0; x < weights.tile_width; ++x) {
           for (int i = 0; i < count; ++i) {
             const auto c = static_cast<std::size_t>(first + i);

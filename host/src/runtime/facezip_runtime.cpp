@@ -14,7 +14,7 @@
 #include "facezip/version.hpp"
 
 struct facezip_package {
-  facezip::Package description;
+  facezip::PackageDescription description;  // no Package, whose files would stay open
   facezip::Blender blender;
 };
 
@@ -64,7 +64,7 @@ void require(bool holds, const char* message) {
 
 const facezip::PackageMap& mapOf(const facezip_package* package, int32_t map) {
   require(package != nullptr, "package is null");
-  const auto& maps = package->description.maps();
+  const auto& maps = package->description.maps;
   if (map < 0 || static_cast<std::size_t>(map) >= maps.size()) {
     throw ArgumentError(fmt::format("map: expected 0 to {}, got {}", maps.size() - 1, map));
   }
@@ -86,7 +86,7 @@ facezip_sample_type sampleType(facezip::SampleType type) {
 /// The weights, checked here so that the text names arguments of this interface.
 std::span<const float> checkedWeights(const facezip_package* package, const float* weights, std::size_t count) {
   require(package != nullptr, "package is null");
-  const auto& names = package->description.expressions();
+  const auto& names = package->description.expressions;
   if (count != names.size()) {
     throw ArgumentError(fmt::format("count: expected {}, one weight per expression, got {}", names.size(), count));
   }
@@ -113,37 +113,38 @@ facezip_status facezip_load(const char* directory, const char* device, facezip_p
   return guarded([&] {
     require(package != nullptr, "package is null");
     require(directory != nullptr, "directory is null");
-    facezip::Package description = facezip::Package::open(directory);
-    facezip::Blender blender(description, facezip::openDevice(device == nullptr ? "auto" : device));
-    *package = new facezip_package{std::move(description), std::move(blender)};
+    *package = facezip::withPackage(directory, [&](const facezip::Package& opened) {
+      facezip::Blender blender(opened, facezip::openDevice(device == nullptr ? "auto" : device));
+      return new facezip_package{opened.description(), std::move(blender)};
+    });
   });
 }
 
 void facezip_free(facezip_package* package) { delete package; }
 
 int32_t facezip_expression_count(const facezip_package* package) {
-  return package == nullptr ? 0 : static_cast<int32_t>(package->description.expressions().size());
+  return package == nullptr ? 0 : static_cast<int32_t>(package->description.expressions.size());
 }
 
 const char* facezip_expression_name(const facezip_package* package, int32_t expression) {
   if (expression < 0 || expression >= facezip_expression_count(package)) return nullptr;
-  return package->description.expressions()[static_cast<std::size_t>(expression)].c_str();
+  return package->description.expressions[static_cast<std::size_t>(expression)].c_str();
 }
 
 int32_t facezip_find_expression(const facezip_package* package, const char* name) {
   if (package == nullptr || name == nullptr) return -1;
-  const auto& names = package->description.expressions();
+  const auto& names = package->description.expressions;
   const auto found = std::find(names.begin(), names.end(), name);
   return found == names.end() ? -1 : static_cast<int32_t>(found - names.begin());
 }
 
 int32_t facezip_map_count(const facezip_package* package) {
-  return package == nullptr ? 0 : static_cast<int32_t>(package->description.maps().size());
+  return package == nullptr ? 0 : static_cast<int32_t>(package->description.maps.size());
 }
 
 int32_t facezip_find_map(const facezip_package* package, const char* name) {
   if (package == nullptr || name == nullptr) return -1;
-  const auto& maps = package->description.maps();
+  const auto& maps = package->description.maps;
   const auto found = std::find_if(maps.begin(), maps.end(), [name](const auto& map) { return map.name == name; });
   return found == maps.end() ? -1 : static_cast<int32_t>(found - maps.begin());
 }

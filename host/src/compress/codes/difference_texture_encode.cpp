@@ -17,9 +17,12 @@ std::string encodeDefines(const BandShape& shape, int bits) {
 }  // namespace
 
 void TextureEncoder::clear(const BandShape& shape, int bits) {
-  context_.launch(
-      context_.kernel("difference_texture_encode.cl", "difference_texture_clear", encodeDefines(shape, bits)),
-      device::WorkItems(shape.width, shape.rows, textures_count_), encoding_, codes_);
+  const cl::Kernel kernel =
+      context_.kernel("difference_texture_encode.cl", "difference_texture_clear", encodeDefines(shape, bits));
+  const std::size_t local = context_.workGroupSize(kernel, kTileSide);
+  const cl_ulong texels = toSize(shape.rows, shape.width);
+  const std::size_t items = roundUp(divideUp(texels, FACEZIP_CLEARED_TEXELS), local);
+  context_.launch(kernel, device::WorkItems(items, textures_count_).inGroupsOf(local, 1), encoding_, codes_, texels);
 }
 
 void TextureEncoder::encode(const DeviceTiles& tiles, const BandShape& shape, const cl::Buffer& textures,

@@ -6,202 +6,98 @@
 #include <memory>
 #include <numeric>
 
-#include "compress/bands/difference.hpp"
-#include "compress/bands/map_bands.hpp"
 #include "compress/codes/difference_texture_range.hpp"
 #include "compress/refine/difference_fit.hpp"
 #include "compress/refine/weight_system.hpp"
-#include "image/sample_window.hpp"
+#include "io/counts.hpp"
 
 namespace facezip::compress {
 namespace {
 
-/// One map of the window on the device.
-class MapWindow {
+/// A map of the window, and the textures that suit its weights.
+class FittedMap {
  public:
-  MapWindow(device::DeviceContext& context, const GridMap& map, const WeightSpace& space)
-      : map_(map),
-        context_(context),
-        textures_(space.textures),
-        window_(*map.map->samples),
-        tiles_(context),
-        samples_(context, "samples of a band", CL_MEM_READ_ONLY),
-        differences_(context, "differences of a band"),
-        tile_at_(context, "lookup of tiles", CL_MEM_READ_ONLY),
-        fit_(context, space),
-        finder_(context, space.textures) {}
+  FittedMap(device::DeviceContext& context, const GridMap& map, const WeightSpace& space)
+      : window(context, map), fit(context, space), finder_(context, space.textures) {}
 
-  double fitWeight() const { return map_.fit_weight; }
-
-  /// Reads the texels that rows [free_begin, free_end) of cells reach into host memory. May run beside the device's
-  /// work on the window before.
-  void prepare(int free_begin, int free_end, const RefinementProblem& problem) {
-    const int height = map_.map->samples->shape().height;
-    const int halo = windowHalo(map_.weight_scale);
-    own_begin_ = std::min(free_begin * map_.weight_scale, height);
-    own_end_ = std::min(free_end * map_.weight_scale, height);
-    window_.moveTo(std::max(0, own_begin_ - halo), std::min(height, own_end_ + halo));
-    masks_ = problem.make_tiles(*map_.map, window_.begin(), window_.end());
-  }
-
-  /// Puts what was prepared on the device.
-  void load() {
-    shape_ = bandShape(*map_.map->samples, window_.end() - window_.begin());
-    first_row_ = window_.begin();
-    const auto first_behind = [&](int row) {
-      return static_cast<std::size_t>(
-          std::partition_point(masks_.tiles.begin(), masks_.tiles.end(),
-                               [&](const TilePosition& tile) { return first_row_ + tile.y * kTileSide < row; }) -
-          masks_.tiles.begin());
-    };
-    first_own_tile_ = first_behind(own_begin_);
-    end_of_own_tiles_ = first_behind(own_end_);
-    tiles_.upload(masks_);
-    tile_at_.upload(tileLookup(masks_, shape_));
-    const cl::Buffer& raw = samples_.upload(window_.samples());
-    differences_.reserve(differenceBufferBytes(shape_, masks_.tiles.size()));
-    computeDifferences(context_, tiles_, shape_, raw, differences_.buffer());
-  }
-
-  void fit(const WeightWindow& weights, float ridge) { fit_.compute(band(), weights, ridge); }
+  double fitWeight() const { return window.map().fit_weight; }
 
   /// Squared error over the texels of the free rows themselves.
   FitError error() {
-    const std::vector<FitError> errors = fit_.errors();
+    const std::vector<FitError> errors = fit.errors();
     FitError sum;
-    for (std::size_t t = first_own_tile_; t < end_of_own_tiles_; ++t) {
+    for (std::size_t t = window.firstOwnTile(); t < window.endOfOwnTiles(); ++t) {
       sum.weighted += errors[t].weighted;
       sum.plain += errors[t].plain;
     }
     return sum;
   }
 
-  void addTo(HalfCells& halves) { halves.add(band(), tile_at_.buffer(), fitWeight()); }
-  void addTo(WeightSystem& system, const WeightWindow& weights) {
-    system.add(band(), tile_at_.buffer(), fit_.textures(), weights, fitWeight());
-  }
-
   /// Of the free rows' tiles, [tile][plane].
   std::vector<TextureRange> ranges() {
-    return finder_.findPerTile(tiles_, shape_, fit_.textures(), first_own_tile_, end_of_own_tiles_);
+    const GridBand band = window.band();
+    return finder_.findPerTile(band.tiles, band.shape, fit.textures(), window.firstOwnTile(), window.endOfOwnTiles());
   }
-  std::size_t planes() const { return static_cast<std::size_t>(textures_ * map_.map->samples->shape().channels); }
+
+  MapWindow window;
+  DifferenceFit fit;
 
  private:
-  GridBand band() const { return {tiles_, shape_, differences_.buffer(), first_row_, map_.weight_scale}; }
-
-  GridMap map_;
-  device::DeviceContext& context_;
-  int textures_;
-  // What prepare() makes.
-  image::SampleWindow window_;
-  TileMasks masks_;
-  int own_begin_ = 0;  ///< texel rows of the free cells
-  int own_end_ = 0;
-  // What is on the device.
-  BandShape shape_;
-  int first_row_ = 0;
-  DeviceTiles tiles_;
-  device::PooledBuffer samples_;
-  device::PooledBuffer differences_;
-  device::PooledBuffer tile_at_;
-  DifferenceFit fit_;
   TextureRangeFinder finder_;
-  std::size_t first_own_tile_ = 0;
-  std::size_t end_of_own_tiles_ = 0;
 };
 
-class Refiner {
+/// What the sweeps over one window found.
+struct WindowFit {
+  std::vector<double> errors;                     ///< weighted, at the start and after each sweep
+  std::vector<float> weights;                     ///< of the free rows, [row][column][C][lanes]
+  std::vector<std::vector<TextureRange>> ranges;  ///< of every map, [tile][plane] of the free rows
+  std::vector<double> end_errors;                 ///< of every map, plain
+};
+
+/// The device's side of one window after the other.
+class Sweeps {
  public:
-  Refiner(device::DeviceContext& context, const RefinementProblem& problem, const RefinementOptions& options)
-      : context_(context),
-        problem_(problem),
+  Sweeps(device::DeviceContext& context, const RefinementProblem& problem, const RefinementOptions& options)
+      : problem_(problem),
         options_(options),
         window_(context, problem.space),
         system_(context, problem.space),
         halves_(context, problem.space),
-        by_halves_(sweepsHalfCells(context, problem.maps)),
-        result_(problem.space) {
-    assert(problem.cell_energy > 0.0 && problem.window_rows > 0);
+        by_halves_(sweepsHalfCells(context, problem.maps) && options.most_sweeps > 0) {
     for (const GridMap& map : problem.maps) {
-      maps_.push_back(std::make_unique<MapWindow>(context, map, problem.space));
+      maps_.push_back(std::make_unique<FittedMap>(context, map, problem.space));
     }
-    result_.ranges.resize(maps_.size());
-    tile_ranges_.resize(maps_.size());
-    result_.end_errors.resize(maps_.size(), 0.0);
-    result_.errors.assign(static_cast<std::size_t>(options.most_sweeps) + 1, 0.0);
   }
 
-  Refinement run(Progress& progress) {
-    const int rows = problem_.space.rows;
-    progress.stage("refining", static_cast<std::size_t>(rows));
-    std::future<void> ahead;  // reads the window after the one at work
-    prepare(0);
-    for (int begin = 0; begin < rows; begin += problem_.window_rows) {
-      const int end = std::min(begin + problem_.window_rows, rows);
-      if (ahead.valid()) ahead.get();
-      moveTo(begin, end);
-      if (end < rows) ahead = std::async(std::launch::async, [this, end] { prepare(end); });
-      sweep(progress);
-      keep();
-      progress.advance(static_cast<std::size_t>(end));
-    }
-    // The start is kept whole: it is what is left where clamping costs too much.
-    const double clipped = options_.most_sweeps > 0 ? options_.clipped_tiles : 0.0;
-    for (std::size_t m = 0; m < maps_.size(); ++m) {
-      result_.ranges[m] = clippedRange(tile_ranges_[m], maps_[m]->planes(), clipped);
-    }
-    return std::move(result_);
+  /// Reads the texels of rows [begin, end) of cells. May run beside sweep() on the window before.
+  void prepare(int begin, int end) {
+    for (const auto& map : maps_) map->window.prepare(begin, end, problem_.make_tiles);
   }
 
- private:
-  void prepare(int begin) {
-    const int end = std::min(begin + problem_.window_rows, problem_.space.rows);
-    for (const auto& map : maps_) map->prepare(begin, end, problem_);
-  }
-
-  void moveTo(int begin, int end) {
+  /// Puts what was prepared on the device. done  weights of the rows of cells above
+  void load(int begin, int end, const GridWeights& done) {
     WindowRows rows{begin, end, begin, end};
-    for (std::size_t m = 0; m < maps_.size(); ++m) {
-      maps_[m]->load();
-      const int scale = problem_.maps[m].weight_scale;
-      const int halo = windowHalo(scale);
-      const WindowRows reached =
-          cellRowsOf(std::max(0, begin * scale - halo), end * scale + halo, scale, problem_.space.rows);
+    for (const auto& map : maps_) {
+      map->window.load();
+      const raster::CellRows reached = map->window.cellRows(problem_.space.rows);
       rows.begin = std::min(rows.begin, reached.begin);
       rows.end = std::max(rows.end, reached.end);
     }
     const std::size_t row_floats = problem_.space.rowFloats();
-    std::vector<float> start(static_cast<std::size_t>(rows.count()) * row_floats);
+    std::vector<float> start(toSize(rows.count()) * row_floats);
     decodeRows(problem_.start, problem_.space, rows.begin, rows.end, start);
     std::vector<float> weights = start;
-    result_.weights.load(rows.begin, begin,
-                         std::span(weights).first(static_cast<std::size_t>(begin - rows.begin) * row_floats));
+    done.load(rows.begin, begin, std::span(weights).first(toSize(begin - rows.begin) * row_floats));
     window_.set(rows, weights, start);
-    if (!by_halves_ || options_.most_sweeps == 0) return;
+    if (!by_halves_) return;
     halves_.moveTo(rows);
-    for (const auto& map : maps_) map->addTo(halves_);
+    for (const auto& map : maps_) halves_.add(map->window.band(), map->window.tileAt(), map->fitWeight());
   }
 
-  /// Fits the difference textures to every texel; returns the squared error, texel and metric weights in it.
-  double fitTexels() {
-    const float ridge = ridgeOf(options_, problem_.space);
-    for (const auto& map : maps_) map->fit(window_, ridge);
-    double error = 0.0;
-    for (const auto& map : maps_) error += map->fitWeight() * map->error().weighted;
-    return error;
-  }
-
-  /// The same on what the sweeps see of the textures.
-  double fit() {
-    if (!by_halves_ || options_.most_sweeps == 0) return fitTexels();
-    halves_.fit(window_, ridgeOf(options_, problem_.space));
-    return halves_.error();
-  }
-
-  void sweep(Progress& progress) {
+  WindowFit sweep(const Progress& progress) {
+    WindowFit found;
     double error = fit();
-    result_.errors[0] += error;
+    found.errors.push_back(error);
     bool done = false;
     for (int sweep = 1; sweep <= options_.most_sweeps; ++sweep) {
       if (!done) {
@@ -211,9 +107,36 @@ class Refiner {
         error = fit();
         done = before - error < options_.least_gain * before;
       }
-      result_.errors[static_cast<std::size_t>(sweep)] += error;
+      found.errors.push_back(error);
     }
-    if (by_halves_ && options_.most_sweeps > 0) turnOnTexels();
+    if (by_halves_) turnOnTexels();
+    const WindowRows& rows = window_.rows();
+    const std::vector<float> weights = window_.weights();
+    const auto row_floats = static_cast<std::ptrdiff_t>(problem_.space.rowFloats());
+    found.weights.assign(weights.begin() + (rows.free_begin - rows.begin) * row_floats,
+                         weights.begin() + (rows.free_end - rows.begin) * row_floats);
+    for (const auto& map : maps_) {
+      found.ranges.push_back(map->ranges());
+      found.end_errors.push_back(map->error().plain);
+    }
+    return found;
+  }
+
+ private:
+  /// Fits the difference textures to every texel; returns the squared error, texel and metric weights in it.
+  double fitTexels() {
+    const float ridge = ridgeOf(options_, problem_.space);
+    for (const auto& map : maps_) map->fit.compute(map->window.band(), window_, ridge);
+    double error = 0.0;
+    for (const auto& map : maps_) error += map->fitWeight() * map->error().weighted;
+    return error;
+  }
+
+  /// The same on what the sweeps see of the textures.
+  double fit() {
+    if (!by_halves_) return fitTexels();
+    halves_.fit(window_, ridgeOf(options_, problem_.space));
+    return halves_.error();
   }
 
   /// What half cells could not see: the weights' slope inside them.
@@ -235,7 +158,9 @@ class Refiner {
 
   void addTexels() {
     system_.clear();
-    for (const auto& map : maps_) map->addTo(system_, window_);
+    for (const auto& map : maps_) {
+      system_.add(map->window.band(), map->window.tileAt(), map->fit.textures(), window_, map->fitWeight());
+    }
   }
 
   void relax() {
@@ -243,31 +168,13 @@ class Refiner {
                   static_cast<float>(options_.trust * problem_.cell_energy));
   }
 
-  void keep() {
-    const WindowRows& rows = window_.rows();
-    const std::size_t row_floats = problem_.space.rowFloats();
-    const std::vector<float> weights = window_.weights();
-    result_.weights.store(
-        rows.free_begin, rows.free_end,
-        std::span(weights).subspan(static_cast<std::size_t>(rows.free_begin - rows.begin) * row_floats,
-                                   static_cast<std::size_t>(rows.free_end - rows.free_begin) * row_floats));
-    for (std::size_t m = 0; m < maps_.size(); ++m) {
-      const std::vector<TextureRange> tiles = maps_[m]->ranges();
-      tile_ranges_[m].insert(tile_ranges_[m].end(), tiles.begin(), tiles.end());
-      result_.end_errors[m] += maps_[m]->error().plain;
-    }
-  }
-
-  device::DeviceContext& context_;
   const RefinementProblem& problem_;
   const RefinementOptions& options_;
   WeightWindow window_;
   WeightSystem system_;
   HalfCells halves_;
   bool by_halves_;
-  std::vector<std::unique_ptr<MapWindow>> maps_;
-  std::vector<std::vector<TextureRange>> tile_ranges_;  ///< of every map, [tile][plane]
-  Refinement result_;
+  std::vector<std::unique_ptr<FittedMap>> maps_;
 };
 
 }  // namespace
@@ -279,7 +186,38 @@ bool sweepsHalfCells(const device::DeviceContext& context, std::span<const GridM
 
 Refinement refine(device::DeviceContext& context, const RefinementProblem& problem, const RefinementOptions& options,
                   Progress& progress) {
-  return Refiner(context, problem, options).run(progress);
+  assert(problem.cell_energy > 0.0 && problem.window_rows > 0);
+  Refinement result(problem.space);
+  result.errors.assign(toSize(options.most_sweeps) + 1, 0.0);
+  result.end_errors.assign(problem.maps.size(), 0.0);
+  std::vector<std::vector<TextureRange>> tile_ranges(problem.maps.size());  // [tile][plane]
+  const int rows = problem.space.rows;
+  const auto endOf = [&](int begin) { return std::min(begin + problem.window_rows, rows); };
+  progress.stage("refining", toSize(rows));
+  Sweeps sweeps(context, problem, options);
+  sweeps.prepare(0, endOf(0));
+  std::future<void> ahead;  // reads the window after the one at work
+  for (int begin = 0; begin < rows; begin = endOf(begin)) {
+    const int end = endOf(begin);
+    if (ahead.valid()) ahead.get();
+    sweeps.load(begin, end, result.weights);
+    if (end < rows) ahead = std::async(std::launch::async, [&, end] { sweeps.prepare(end, endOf(end)); });
+    const WindowFit fit = sweeps.sweep(progress);
+    result.weights.store(begin, end, fit.weights);
+    for (std::size_t i = 0; i < fit.errors.size(); ++i) result.errors[i] += fit.errors[i];
+    for (std::size_t m = 0; m < problem.maps.size(); ++m) {
+      tile_ranges[m].insert(tile_ranges[m].end(), fit.ranges[m].begin(), fit.ranges[m].end());
+      result.end_errors[m] += fit.end_errors[m];
+    }
+    progress.advance(toSize(end));
+  }
+  // The start is kept whole: it is what is left where clamping costs too much.
+  const double clipped = options.most_sweeps > 0 ? options.clipped_tiles : 0.0;
+  for (std::size_t m = 0; m < problem.maps.size(); ++m) {
+    const std::size_t planes = toSize(problem.space.textures, problem.maps[m].map->samples->shape().channels);
+    result.ranges.push_back(clippedRange(tile_ranges[m], planes, clipped));
+  }
+  return result;
 }
 
 float ridgeOf(const RefinementOptions& options, const WeightSpace& space) {
@@ -291,7 +229,5 @@ int windowRowStep(std::span<const GridMap> maps) {
   for (const GridMap& map : maps) step = std::lcm(step, kTileSide / std::gcd(kTileSide, map.weight_scale));
   return step;
 }
-
-int windowHalo(int weight_scale) { return ((weight_scale + 1) / 2 + kTileSide - 1) / kTileSide * kTileSide; }
 
 }  // namespace facezip::compress

@@ -8,7 +8,6 @@
 // (half_cells.hpp), with one more turn on the texels; every step on texels lowers the objective of the whole image.
 #pragma once
 
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -16,6 +15,7 @@
 #include "compress/bands/tile_band.hpp"
 #include "compress/codes/texture_encoding.hpp"
 #include "compress/refine/grid_weights.hpp"
+#include "compress/refine/map_window.hpp"
 #include "device/device_context.hpp"
 #include "facezip/progress.hpp"
 
@@ -36,8 +36,7 @@ struct RefinementProblem {
   WeightSpace space;
   const EncodedWeights& start;    ///< the paper's weights
   std::span<const GridMap> maps;  ///< that share the weights
-  /// Tiles of rows [begin, end) of a map, one mask each: raster::activeTiles().
-  std::function<TileMasks(const OpenMap& map, int begin, int end)> make_tiles;
+  MakeMapTiles make_tiles;
   double cell_energy = 0.0;  ///< mean of sum_p t |Delta_n|^2 over the covered cells and expressions; above 0
   int window_rows = 0;       ///< rows of cells that a window frees: windowRowStep() times a whole number
 };
@@ -64,8 +63,5 @@ float ridgeOf(const RefinementOptions& options, const WeightSpace& space);
 
 /// Windows begin and end at multiples of this many rows of cells, so that they do at whole tiles of every map.
 int windowRowStep(std::span<const GridMap> maps);
-
-/// Texel rows beside a window's own that its cells reach into, a multiple of 16.
-int windowHalo(int weight_scale);
 
 }  // namespace facezip::compress

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "compress/search/centred_gram.hpp"
+#include "device/pooled_buffer.hpp"
 
 namespace facezip::compress {
 namespace {
@@ -60,20 +61,21 @@ SeamTables computeSeamTables(device::DeviceContext& context, const GramMatrices&
   const cl::Buffer labels =
       context.upload(std::vector<std::uint8_t>(clustering.labels.begin(), clustering.labels.end()), "cluster labels");
 
+  device::PooledBuffer gram(context, "centred Gram matrices of pairs", CL_MEM_READ_ONLY);
+  device::PooledBuffer pair_masks(context, "masks of pairs", CL_MEM_READ_ONLY);
+  device::PooledBuffer table_values(context, "seam cost tables", CL_MEM_WRITE_ONLY);
   for (int first = 0; first < pairs; first += batch) {
     const int count = std::min(batch, pairs - first);
     const PackedPairs packed = packPairs(grams, first, count, padded);
     std::vector<float> values(table * toSize(count));
-    const std::size_t value_bytes = values.size() * sizeof(float);
-    const SeamCostLaunch launch{.pairs = count,
-                                .expressions = grams.expressions,
-                                .clusters = clustering.clusters,
-                                .gram = context.upload(packed.grams, "centred Gram matrices of pairs"),
-                                .pair_masks = context.upload(packed.masks, "masks of pairs"),
-                                .labels = labels,
-                                .tables = context.allocate(value_bytes, CL_MEM_WRITE_ONLY, "seam cost tables")};
-    launchSeamCost(context, launch);
-    context.read(launch.tables, values, "seam cost tables");
+    launchSeamCost(context, {.pairs = count,
+                             .expressions = grams.expressions,
+                             .clusters = clustering.clusters,
+                             .gram = gram.upload(packed.grams),
+                             .pair_masks = pair_masks.upload(packed.masks),
+                             .labels = labels,
+                             .tables = table_values.reserve(values.size() * sizeof(float))});
+    table_values.read(values);
     for (std::size_t i = 0; i < values.size(); ++i) {
       tables.values.push_back(packed.scales[i / table] * static_cast<double>(values[i]));
     }

@@ -3,12 +3,12 @@
 #include <cstdlib>
 
 #include "facezip/blend.hpp"
-#include "facezip/error.hpp"
+#include "fuzz_input.hpp"
 #include "fuzz_package.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace facezip;
-  try {
+  fuzz::refuseOrRead([&] {
     const AnimationClip clip = readAnimation(fuzz::fileOf("clip.csv", data, size), fuzz::package());
     if (clip.frames() < 1) std::abort();
     for (int f = 0; f < clip.frames(); ++f) {
@@ -17,7 +17,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (!(std::abs(weight) <= kLargestWeight)) std::abort();
       }
     }
-  } catch (const InputError&) {
-  }
+  });
   return 0;
 }

@@ -1,9 +1,9 @@
 // fuzz_package.hpp - a package for readers of what belongs to one: clips, gains.
 #pragma once
 
+#include "../host/sample_package.hpp"
 #include "facezip/package.hpp"
 #include "fuzz_file.hpp"
-#include "../host/sample_package.hpp"
 
 namespace facezip::fuzz {
 

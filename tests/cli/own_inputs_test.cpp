@@ -103,6 +103,9 @@ TEST_F(OwnInputs, BlendAndReconstruct) {
   for (const char* frame : {"face/x.png", "face/albedo/neutral.png", "face-link/x.png"}) {
     expectRefusal(blend + " --weights r0=1 -o " + q(frame));
   }
+  // No input, but a frame there would be one more expression of the capture.
+  expectRefusal(blend + " --weights r0=1 -o " + q("capture/albedo/x.png"));
+  expectRefusal(blend + " --weights r0=1 -o " + q("link/albedo/r0.png"));
   expectRefusal(blend + " --weights r0=1 --gain " + q("gain.json") + " -o " + q("face/x.png"));
   expectRefusal(blend + " --animation " + q("clip.csv") + " -o " + q("face/%d.png"));
   // A frame of the clip that only its number makes an input.

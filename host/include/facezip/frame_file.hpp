@@ -35,7 +35,7 @@ class FramePattern {
   FramePattern(std::string pattern, bool numbered, std::size_t maps);
   std::filesystem::path file(int frame, const std::string& map) const;
   /// Throws, before any work, InputError where frames of a map would lose something in that format, OutputError where
-  /// one of frames 0 to frames - 1 would be an input or lie in one.
+  /// one of frames 0 to frames - 1 would be an input or lie in one, or among the textures of a capture or package.
   /// inputs  beside the package
   void requireFits(const Package& package, int frames = 1, ProtectedPaths inputs = {}) const;
 

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <set>
 #include <string_view>
 #include <utility>
 
 #include "blend/frame_writer.hpp"
 #include "image/image_file.hpp"
+#include "image/input_extensions.hpp"
 #include "image/output_formats.hpp"
 #include "io/write_file.hpp"
 #include "package/package_files.hpp"
@@ -29,6 +31,19 @@ void writeWhole(const fs::path& file, const image::ImageShape& shape, const std:
     throw error.of(file);
   }
   staged.commit();
+}
+
+/// What says that a folder holds the textures of a capture or package: its neutral, and beside the folder what describes
+/// it. Empty where nothing does.
+std::string signOfTextures(const fs::path& folder) {
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    if (entry.path().stem() != "neutral" || !image::hasImageExtension(entry.path())) continue;
+    for (const char* sign : {"capture.json", "neutral.obj", package::kDescriptionFile}) {
+      if (fs::exists(folder.parent_path() / sign, error)) return (folder.parent_path() / sign).string();
+    }
+  }
+  return "";
 }
 
 }  // namespace
@@ -85,9 +100,19 @@ fs::path FramePattern::file(int frame, const std::string& map) const {
 
 void FramePattern::requireFits(const Package& package, int frames, ProtectedPaths inputs) const {
   inputs.add(inputsOf(package));
+  std::set<fs::path> folders;
   for (const PackageMap& map : package.maps()) {
     image::requireFormat(file(0, map.name), package::neutralShape(map));
-    for (int frame = 0; frame < frames; ++frame) inputs.requireApart(file(frame, map.name));
+    for (int frame = 0; frame < frames; ++frame) {
+      const fs::path output = file(frame, map.name);
+      inputs.requireApart(output);
+      const fs::path folder = fs::absolute(output).parent_path();
+      if (!folders.insert(folder).second) continue;
+      const std::string sign = signOfTextures(folder);
+      if (sign.empty()) continue;
+      throw OutputError(output, fmt::format("it would be taken for a texture of what {} describes", sign),
+                        "choose another --output");
+    }
   }
 }
 

@@ -88,6 +88,7 @@ void addEvaluateCommand(CLI::App& app, const CommonOptions& common) {
   command->add_flag("--ablation", arguments->ablation,
                     "Also every method at C = 1, 2, 3, 4: compresses up to 16 times more");
   command->add_option("--blends", arguments->blends, "Random blends of one to five expressions to measure; 0: none")
+      ->transform(wholeNumber())
       ->check(CLI::Range(0, 10000))
       ->capture_default_str();
   command
@@ -115,12 +116,16 @@ void addEvaluateCommand(CLI::App& app, const CommonOptions& common) {
     if (!arguments->picture.empty()) options.pictures = PictureOptions{.map = arguments->picture_map};
     options.memory_bytes = parseBytes("--memory", arguments->memory);
     TerminalProgress progress(common.quiet);
-    requireReportPlace(arguments->report);
     const CancelOnSignal cancel(progress);
     const Package package = Package::open(arguments->package);
-    const Evaluation evaluation = evaluatePackage(openCapture(arguments->capture), package, options,
-                                                  openDevice(arguments->device, &progress), progress);
-    if (!arguments->report.empty()) writeReport(arguments->report, toJson(evaluation));
+    const Capture capture = openCapture(arguments->capture);
+    const ProtectedPaths inputs = inputsOf(capture).add(inputsOf(package));
+    requireReportPlace(arguments->report, inputs);
+    requireReportPlace(arguments->picture, ProtectedPaths(inputs).add(arguments->report, "the report that is written"),
+                       "--picture");
+    const Evaluation evaluation =
+        evaluatePackage(capture, package, options, openDevice(arguments->device, &progress), progress);
+    if (!arguments->report.empty()) writeReport(arguments->report, toJson(evaluation), &progress);
     if (!arguments->picture.empty()) writeErrorSheet(arguments->picture, evaluation, pictureTitles(evaluation));
     printEvaluation(evaluation);
   });

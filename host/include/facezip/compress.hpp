@@ -114,8 +114,12 @@ struct CompressReport {
 
 /// Compresses `capture` into the directory `package`, which appears whole or not at all; an earlier package there is
 /// replaced. The same capture, options and device give the same bytes.
-/// Throws InputError (the capture, an option), DeviceError, OutputError, SolverError, Cancelled.
+/// Throws InputError (the capture, an option), DeviceError, OutputError (also where `package` is an input, lies in one
+/// or holds one), SolverError, Cancelled.
 CompressReport compressCapture(const Capture& capture, const std::filesystem::path& package,
                                const CompressOptions& options, const Device& device, Progress& progress);
+
+/// What compressCapture() reads.
+ProtectedPaths inputsOf(const Capture& capture, const CompressOptions& options);
 
 }  // namespace facezip

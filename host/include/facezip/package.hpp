@@ -11,6 +11,7 @@
 
 #include "facezip/block_format.hpp"
 #include "facezip/error.hpp"
+#include "facezip/protected_paths.hpp"
 #include "facezip/sample_type.hpp"
 
 namespace facezip {
@@ -142,6 +143,9 @@ class Package {
   PackageDescription description_;
   std::uint64_t bytes_on_disk_ = 0;
 };
+
+/// The package's directory.
+ProtectedPaths inputsOf(const Package& package);
 
 /// Opens a package and returns what `use(package)` does. Where another package takes its place before `use` has read
 /// all that it needs, which it then says by an InputError, the same with that one.

@@ -99,12 +99,20 @@ double CompressReport::permutationGap() const {
   return (permutation_cost - *permutation_bound) / permutation_cost;
 }
 
+ProtectedPaths inputsOf(const Capture& capture, const CompressOptions& options) {
+  ProtectedPaths inputs = inputsOf(capture);
+  if (options.region != "whole") inputs.addFile(options.region, "the region that is read");
+  if (options.importance != "none") inputs.addFile(options.importance, "the importance that is read");
+  return inputs;
+}
+
 CompressReport compressCapture(const Capture& capture, const fs::path& package, const CompressOptions& options,
                                const Device& device, Progress& progress) {
   requireSaneOptions(options);
+  inputsOf(capture, options).requireApartFromFolder(package);
   StageClock clock;
   const Run run{device.context(), progress, clock, options.memory_bytes};
-  io::StagedDirectory staged(package, package::footprint());
+  io::StagedDirectory staged(package, package::footprint(), &progress);
   OpenTextures textures = openTextures(capture, staged.path(), run);
   MapSet& maps = textures.maps;
   const FaceModel model = readFaceModel(capture, options, run);

@@ -50,6 +50,10 @@ Package Package::openOnce(const fs::path& directory) {
   return package;
 }
 
+ProtectedPaths inputsOf(const Package& package) {
+  return ProtectedPaths().add(package.directory(), "the package that is read");
+}
+
 Package Package::open(const fs::path& directory) {
   std::error_code ignored;
   const bool is_description =

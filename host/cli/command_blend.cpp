@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <memory>
 
 #include "cancel_on_signal.hpp"
@@ -24,13 +25,17 @@ struct Arguments {
 };
 
 /// Frames to blend: one from --weights, or those of --animation.
-AnimationClip readFrames(const Arguments& arguments, const Package& package) {
-  if (!arguments.animation.empty()) return readAnimation(arguments.animation, package);
-  return {static_cast<int>(package.expressions().size()), weightsByName(package, parseWeights(arguments.weights))};
+AnimationClip readFrames(const Arguments& arguments, const Package& package, Progress& progress) {
+  if (!arguments.animation.empty()) return readAnimation(arguments.animation, package, &progress);
+  const auto weights = parseWeights(arguments.weights);
+  for (const auto& [name, weight] : weights) {
+    if (std::abs(weight) > kUsualWeight) progress.note(fmt::format("{} = {}: 1 is the whole expression", name, weight));
+  }
+  return {static_cast<int>(package.expressions().size()), weightsByName(package, weights)};
 }
 
 void blendFrames(const Arguments& arguments, const Package& package, std::uint64_t memory_bytes, Progress& progress) {
-  const AnimationClip clip = readFrames(arguments, package);
+  const AnimationClip clip = readFrames(arguments, package, progress);
   const FramePattern pattern(arguments.output, !arguments.animation.empty(), package.maps().size());
   pattern.requireFits(package, clip.frames(),
                       ProtectedPaths()

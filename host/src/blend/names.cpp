@@ -11,6 +11,7 @@
 #include <numeric>
 
 #include "blend/number.hpp"
+#include "blend/shape_names.hpp"
 #include "facezip/blend.hpp"
 #include "io/counts.hpp"
 #include "package/package_json.hpp"
@@ -48,12 +49,15 @@ std::vector<std::string> nearestNames(const std::string& name, const std::vector
   return nearest;
 }
 
-int expressionIndex(const Package& package, const std::string& name, const std::string& item) {
-  const std::vector<std::string>& names = package.expressions();
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found != names.end()) return static_cast<int>(found - names.begin());
+void refuseUnknown(const Package& package, const std::string& name, const std::string& item) {
   throw InputError({package.directory().string(), item, "an expression of the package", package::quoted(name),
-                    fmt::format("the nearest are {}", fmt::join(nearestNames(name, names), ", "))});
+                    fmt::format("the nearest are {}", fmt::join(nearestNames(name, package.expressions()), ", "))});
+}
+
+int expressionIndex(const Package& package, const std::string& name, const std::string& item) {
+  const auto found = findName(name, package.expressions());
+  if (!found) refuseUnknown(package, name, item);
+  return static_cast<int>(*found);
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -92,17 +96,26 @@ std::optional<float> parseNumber(std::string_view text) {
 }  // namespace blend
 
 std::vector<float> weightsByName(const Package& package, const std::vector<std::pair<std::string, float>>& weights) {
+  std::vector<std::string> given;
+  for (const auto& [name, weight] : weights) given.push_back(name);
+  const std::vector<blend::NameMatch> matches = blend::matchNames(given, package.expressions());
   std::vector<float> beta(package.expressions().size(), 0.0f);
-  std::vector<bool> given(beta.size(), false);
-  for (const auto& [name, weight] : weights) {
-    const std::size_t n = toSize(blend::expressionIndex(package, name, "weights"));
-    if (given[n]) throw InputError({"", "weights", "each expression once", package::quoted(name) + " twice", ""});
+  for (std::size_t g = 0; g < given.size(); ++g) {
+    const float weight = weights[g].second;
+    if (const auto earlier = matches[g].repeats) {
+      throw InputError({"", "weights", "each expression once",
+                        given[g] == given[*earlier]
+                            ? package::quoted(given[g]) + " twice"
+                            : package::quoted(given[*earlier]) + " and " + package::quoted(given[g]),
+                        ""});
+    }
+    if (matches[g].drives.empty()) blend::refuseUnknown(package, given[g], "weights");
     if (!(std::abs(weight) <= kLargestWeight)) {
-      throw InputError({"", "weights", fmt::format("a number of at most {:g} either way for {}", kLargestWeight, name),
+      throw InputError({"", "weights",
+                        fmt::format("a number of at most {:g} either way for {}", kLargestWeight, given[g]),
                         fmt::format("{:g}", weight), ""});
     }
-    given[n] = true;
-    beta[n] = weight;
+    for (const blend::Drive& drive : matches[g].drives) beta[drive.expression] += drive.share * weight;
   }
   return beta;
 }

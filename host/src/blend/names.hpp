@@ -17,7 +17,10 @@ int editDistance(std::string_view a, std::string_view b);
 std::vector<std::string> nearestNames(const std::string& name, const std::vector<std::string>& names,
                                       std::size_t most = 3);
 
-/// Index of the expression `name`. Throws InputError (item `item`) that lists the nearest names there are.
+/// Throws InputError (item `item`) that lists the nearest names there are.
+[[noreturn]] void refuseUnknown(const Package& package, const std::string& name, const std::string& item);
+
+/// Index of the expression `name`, or of the one that shows the same shape. Throws InputError as refuseUnknown().
 int expressionIndex(const Package& package, const std::string& name, const std::string& item);
 
 }  // namespace facezip::blend

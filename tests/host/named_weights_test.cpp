@@ -6,6 +6,7 @@
 
 #include "blend/names.hpp"
 #include "facezip/blend.hpp"
+#include "facezip/nearest_names.hpp"
 #include "io/staged_directory.hpp"
 #include "notes.hpp"
 #include "sample_package.hpp"
@@ -87,10 +88,10 @@ TEST(WeightsByName, ComparesNamesAsTheyLook) {
 }
 
 TEST(EditDistance, CountsEditsSwapsAndNotCase) {
-  EXPECT_EQ(blend::editDistance("", "abc"), 3);
-  EXPECT_EQ(blend::editDistance("kitten", "sitting"), 3);
-  EXPECT_EQ(blend::editDistance("JAWOPEN", "jawOpen"), 0);
-  EXPECT_EQ(blend::editDistance("jawOpne", "jawOpen"), 1);
+  EXPECT_EQ(editDistance("", "abc"), 3);
+  EXPECT_EQ(editDistance("kitten", "sitting"), 3);
+  EXPECT_EQ(editDistance("JAWOPEN", "jawOpen"), 0);
+  EXPECT_EQ(editDistance("jawOpne", "jawOpen"), 1);
 }
 
 TEST(ParseWeights, ReadsPairsAndQuotesWhatItCannot) {

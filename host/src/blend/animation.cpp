@@ -12,6 +12,7 @@
 #include "blend/number.hpp"
 #include "blend/shape_names.hpp"
 #include "facezip/blend.hpp"
+#include "facezip/nearest_names.hpp"
 #include "io/counts.hpp"
 #include "io/read_file.hpp"
 #include "package/package_json.hpp"
@@ -73,7 +74,7 @@ Header parseHeader(const std::string& line, std::size_t line_number, const std::
   const std::string name = named == header.names.end() ? "" : *named;
   throw InputError({file.string(), lineItem(line_number), "names of expressions of the package", package::quoted(line),
                     fmt::format("the nearest to {} is {}", package::quoted(name),
-                                blend::nearestNames(name, package.expressions(), 1).front())});
+                                nearestNames(name, package.expressions(), 1).front())});
 }
 
 /// Says which columns nothing comes of: a misspelt name would otherwise go unnoticed.
@@ -91,7 +92,7 @@ void noteSkipped(const Header& header, const std::filesystem::path& file, const 
                   fmt::join(skipped.begin(), skipped.begin() + static_cast<std::ptrdiff_t>(listed), ", "));
   if (listed < skipped.size()) text += fmt::format(" and {} more", skipped.size() - listed);
   progress.note(fmt::format("{} (the nearest to the first is {})", text,
-                            blend::nearestNames(skipped.front(), package.expressions(), 1).front()));
+                            nearestNames(skipped.front(), package.expressions(), 1).front()));
 }
 
 /// The largest weight, either way, and where it stands.

@@ -11,6 +11,7 @@
 #include "blend/number.hpp"
 #include "blend/shape_names.hpp"
 #include "facezip/error.hpp"
+#include "facezip/nearest_names.hpp"
 #include "io/read_file.hpp"
 #include "package/json_field.hpp"
 #include "package/package_json.hpp"
@@ -68,7 +69,7 @@ class Guess {
                        const std::string& expected) const {
     if (const auto found = blend::findName(name, names)) return static_cast<Eigen::Index>(*found);
     throw InputError({file_, item, expected, package::quoted(name),
-                      fmt::format("the nearest is {}", blend::nearestNames(name, names, 1).front())});
+                      fmt::format("the nearest is {}", nearestNames(name, names, 1).front())});
   }
 
   std::string file_;

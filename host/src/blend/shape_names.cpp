@@ -30,13 +30,13 @@ const Table& table() {
   static const Table read = [] {
     Table made;
     const auto json = nlohmann::json::parse(embeddedShapeNames().at("shape_names.json"));
-    const auto shapeOf = [&](const std::string& name) { return made.shapes.at(lowered(name)); };
+    const auto rowOf = [&](const std::string& name) { return made.shapes.at(lowered(name)); };
     for (const auto& row : json["shapes"]) {
       for (const auto& name : row) made.shapes[lowered(name.get<std::string>())] = lowered(row[0].get<std::string>());
     }
     for (const auto& group : json["groups"]) {
       std::vector<std::string> shapes;
-      for (const auto& name : group["of"]) shapes.push_back(shapeOf(name));
+      for (const auto& name : group["of"]) shapes.push_back(rowOf(name.get<std::string>()));
       for (const auto& name : group["names"]) made.groups.emplace(lowered(name.get<std::string>()), shapes);
     }
     for (const auto& name : json["no_shapes"]) made.no_shapes.insert(lowered(name.get<std::string>()));
@@ -80,7 +80,7 @@ class Matcher {
  private:
   std::optional<std::size_t> exact(const std::string& name) const {
     const auto found = std::ranges::find(names_, name);
-    return found == names_.end() ? std::nullopt : std::optional<std::size_t>(found - names_.begin());
+    return found == names_.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - names_.begin()));
   }
 
   std::optional<std::size_t> named(const std::string& shape) const {

@@ -52,6 +52,7 @@ TEST(WeightsByName, KnowsOtherNamesOfAShape) {
   EXPECT_EQ(weights("AU12=1"), (Weights{1, 1, 0, 0, 0, 0})) << "both sides by the name of both";
   EXPECT_EQ(weights("browDownLeft=0.5,browDown_R=1"), (Weights{0, 0, 0, 0.75f, 0, 0}))
       << "both sides of one expression";
+  EXPECT_EQ(weights("BROWDOWN=1"), (Weights{0, 0, 0, 1, 0, 0})) << "both are names of both sides";
   EXPECT_EQ(weights("browInnerUp_L=1"), (Weights{0, 0, 0, 0, 0.5f, 0}));
   // Exact names, then names of one shape, then those of several.
   EXPECT_EQ(weights("AU12=1,mouthSmile_L=0.5"), (Weights{0.5f, 1, 0, 0, 0, 0}));

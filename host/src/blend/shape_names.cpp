@@ -21,7 +21,7 @@ std::string lowered(std::string_view name) {
 
 /// The names, in lower case.
 struct Table {
-  std::map<std::string, std::string> shapes;                    ///< any name to the first of its row
+  std::map<std::string, std::string> shapes;                    ///< any name to the first of its row, or group
   std::multimap<std::string, std::vector<std::string>> groups;  ///< any name to shapes
   std::set<std::string> no_shapes;
 };
@@ -37,7 +37,11 @@ const Table& table() {
     for (const auto& group : json["groups"]) {
       std::vector<std::string> shapes;
       for (const auto& name : group["of"]) shapes.push_back(rowOf(name.get<std::string>()));
-      for (const auto& name : group["names"]) made.groups.emplace(lowered(name.get<std::string>()), shapes);
+      for (const auto& name : group["names"]) {
+        const std::string lower = lowered(name.get<std::string>());
+        made.groups.emplace(lower, shapes);
+        made.shapes.try_emplace(lower, lowered(group["names"][0].get<std::string>()));
+      }
     }
     for (const auto& name : json["no_shapes"]) made.no_shapes.insert(lowered(name.get<std::string>()));
     return made;

@@ -8,6 +8,9 @@ const lowered = (name) => name.replace(/[A-Z]/g, (c) => c.toLowerCase());
 const shapes = new Map(table.shapes.flatMap((row) => row.map((name) => [lowered(name), lowered(row[0])])));
 const shapeOf = (name) => shapes.get(lowered(name)) ?? lowered(name);
 const groups = table.groups.map(({ names, of }) => ({ names: names.map(lowered), of: of.map(shapeOf) }));
+for (const { names } of groups) {
+  for (const name of names) if (!shapes.has(name)) shapes.set(name, names[0]);
+}
 const noShapes = new Set(table.no_shapes.map(lowered));
 
 /** Does a column of a clip hold something else than weights, as face trackers write it: time, turns of the head? */

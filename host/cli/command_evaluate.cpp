@@ -118,7 +118,7 @@ void addEvaluateCommand(CLI::App& app, const CommonOptions& common) {
     TerminalProgress progress(common.quiet);
     const CancelOnSignal cancel(progress);
     const Package package = Package::open(arguments->package);
-    const Capture capture = openCapture(arguments->capture);
+    const Capture capture = openCapture(arguments->capture, mapNames(package));
     const ProtectedPaths inputs = inputsOf(capture).add(inputsOf(package));
     requireReportPlace(arguments->report, inputs);
     requireReportPlace(arguments->picture, ProtectedPaths(inputs).add(arguments->report, "the report that is written"),

@@ -90,7 +90,7 @@ RigInputs readInputs(const Capture& capture, const fs::path& template_directory,
                      Progress& progress) {
   progress.stage("reading the template", 0);
   RigInputs inputs;
-  inputs.rig_template = readTemplate(template_directory);
+  inputs.rig_template = readTemplate(template_directory, progress);
   requireRigSize(inputs.rig_template.names.size(), capture.expressions.size(), template_directory.string());
   inputs.subject = readSubject(capture, options, progress);
   requireSkin(inputs.rig_template, inputs.subject.neutral, capture.neutral_mesh.string());

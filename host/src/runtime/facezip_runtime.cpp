@@ -152,7 +152,7 @@ int32_t facezip_find_map(const facezip_package* package, const char* name) {
   if (package == nullptr || name == nullptr) return -1;
   const auto& maps = package->description.maps;
   const auto found = std::find_if(maps.begin(), maps.end(),
-                                  [wanted = io::composed(name)](const auto& map) { return map.name == wanted; });
+                                  [wanted = facezip::io::composed(name)](const auto& map) { return map.name == wanted; });
   return found == maps.end() ? -1 : static_cast<int32_t>(found - maps.begin());
 }
 

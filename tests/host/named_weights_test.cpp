@@ -155,17 +155,19 @@ TEST_F(Animation, OfAFaceTrackerIsRead) {
       "17:24:45:21.535,61,0.75,0.5,-0.1,x\n");
   ASSERT_EQ(clip.frames(), 3);
   EXPECT_THAT(clip.weights, testing::ElementsAre(0, 0.25f, 0, 0, 0.25f, 0, 0, 0.75f, 0)) << "no face: as before";
-  EXPECT_THAT(notes_.all, testing::ElementsAre(HasSubstr("no expression is called so: MouthSmileLeft (the nearest")));
+  EXPECT_THAT(notes_.all,
+              testing::ElementsAre(HasSubstr("no expression is called so: \"MouthSmileLeft\" (the nearest")));
   read("Timecode,BlendShapeCount,JawOpen\n1,0,0.5\n");
   EXPECT_TRUE(notes_.all.empty()) << notes_.all[0];
 }
 
 TEST_F(Animation, NotesColumnsThatDriveNothing) {
   EXPECT_EQ(read("smile,frown,,jawOpne\n1,what,,ever\n").weights, (std::vector<float>{1, 0, 0}));
-  EXPECT_THAT(notes_.all, testing::ElementsAre(testing::AllOf(HasSubstr("clip.csv: columns skipped"),
-                                                              HasSubstr("frown, jawOpne (the nearest to the first"))));
+  EXPECT_THAT(notes_.all,
+              testing::ElementsAre(testing::AllOf(HasSubstr("clip.csv: columns skipped"),
+                                                  HasSubstr("\"frown\", \"jawOpne\" (the nearest to the first"))));
   read("smile,a,b,c,d,e,f,g,h,i,j\n1,1,1,1,1,1,1,1,1,1,1\n");
-  EXPECT_THAT(notes_.all, testing::ElementsAre(HasSubstr("g, h and 2 more (")));
+  EXPECT_THAT(notes_.all, testing::ElementsAre(HasSubstr("\"g\", \"h\" and 2 more (")));
 }
 
 TEST_F(Animation, NotesPerCent) {

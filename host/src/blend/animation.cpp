@@ -80,16 +80,16 @@ Header parseHeader(const std::string& line, std::size_t line_number, const std::
 /// Says which columns nothing comes of: a misspelt name would otherwise go unnoticed.
 void noteSkipped(const Header& header, const std::filesystem::path& file, const Package& package, Progress& progress) {
   constexpr std::size_t kMostListed = 8;
-  std::vector<std::string> skipped;
+  std::vector<std::string> skipped, shown;
   for (std::size_t column = 0; column < header.names.size(); ++column) {
     const std::string& name = header.names[column];
     if (header.drives[column].empty() && !name.empty() && !blend::isNoShape(name)) skipped.push_back(name);
   }
   if (skipped.empty()) return;
   const std::size_t listed = std::min(skipped.size(), kMostListed);
+  for (std::size_t i = 0; i < listed; ++i) shown.push_back(package::quoted(skipped[i]));
   std::string text =
-      fmt::format("{}: columns skipped, since no expression is called so: {}", file.string(),
-                  fmt::join(skipped.begin(), skipped.begin() + static_cast<std::ptrdiff_t>(listed), ", "));
+      fmt::format("{}: columns skipped, since no expression is called so: {}", file.string(), fmt::join(shown, ", "));
   if (listed < skipped.size()) text += fmt::format(" and {} more", skipped.size() - listed);
   progress.note(fmt::format("{} (the nearest to the first is {})", text,
                             nearestNames(skipped.front(), package.expressions(), 1).front()));

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include "blend/shape_names_file.hpp"
 #include "io/composed.hpp"
@@ -72,7 +73,13 @@ std::map<std::string, std::size_t> byShape(const std::vector<std::string>& names
 class Matcher {
  public:
   Matcher(const std::vector<std::string>& given, const std::vector<std::string>& names)
-      : given_(given), names_(names), by_shape_(byShape(names)), matches_(given.size()), driven_(names.size(), false) {}
+      : given_(given), by_shape_(byShape(names)), matches_(given.size()), driven_(names.size(), false) {
+    for (std::size_t n = 0; n < names.size(); ++n) {
+      by_name_.emplace(names[n], n);
+      const auto [begin, end] = table().groups.equal_range(lowered(names[n]));
+      for (auto group = begin; group != end; ++group) wholes_.emplace_back(n, &group->second);
+    }
+  }
 
   std::vector<NameMatch> match() {
     driveOne([this](const std::string& name) { return exact(name); });
@@ -83,8 +90,8 @@ class Matcher {
 
  private:
   std::optional<std::size_t> exact(const std::string& name) const {
-    const auto found = std::ranges::find(names_, name);
-    return found == names_.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - names_.begin()));
+    const auto found = by_name_.find(name);
+    return found == by_name_.end() ? std::nullopt : std::optional(found->second);
   }
 
   std::optional<std::size_t> named(const std::string& shape) const {
@@ -133,20 +140,18 @@ class Matcher {
 
   /// Expressions that show several shapes, by the name of one.
   void driveWhole(std::size_t g, const std::string& shape) {
-    for (std::size_t n = 0; n < names_.size(); ++n) {
-      if (driven_[n]) continue;
-      const auto [begin, end] = table().groups.equal_range(lowered(names_[n]));
-      for (auto group = begin; group != end; ++group) {
-        const std::vector<std::string>& shapes = group->second;
-        if (std::ranges::find(shapes, shape) == shapes.end() || !parts_.emplace(n, shape).second) continue;
-        matches_[g].drives.push_back({n, 1.0f / static_cast<float>(shapes.size())});
+    for (const auto& [n, shapes] : wholes_) {
+      if (driven_[n] || std::ranges::find(*shapes, shape) == shapes->end()) continue;
+      if (parts_.emplace(n, shape).second) {
+        matches_[g].drives.push_back({n, 1.0f / static_cast<float>(shapes->size())});
       }
     }
   }
 
   const std::vector<std::string>& given_;
-  const std::vector<std::string>& names_;
+  std::map<std::string, std::size_t> by_name_;
   const std::map<std::string, std::size_t> by_shape_;
+  std::vector<std::pair<std::size_t, const std::vector<std::string>*>> wholes_;  ///< expressions of several shapes
   std::vector<NameMatch> matches_;
   std::vector<bool> driven_;
   std::set<std::pair<std::size_t, std::string>> parts_;  ///< expressions and shapes that drive them already

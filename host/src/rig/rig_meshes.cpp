@@ -60,7 +60,8 @@ geometry::TriangleMesh wholeNeutral(const geometry::TriangleMesh& skin, const ge
 std::string neutralOf(const std::vector<PackageMap>& maps, const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     for (const PackageMap& map : maps) {
-      if (map.name == name && map.sample_type != SampleType::kFloat32) return map.neutral_file;
+      // glTF takes PNG alone.
+      if (map.name == name && map.neutral_file.ends_with(".png")) return map.neutral_file;
     }
   }
   return "";

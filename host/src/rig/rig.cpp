@@ -17,6 +17,7 @@
 #include "rig/rig_json.hpp"
 #include "rig/rig_meshes.hpp"
 #include "rig/rig_weights.hpp"
+#include "rig/strain_codes.hpp"
 #include "rig/weight_guess.hpp"
 
 namespace facezip {
@@ -69,6 +70,7 @@ RigHeadMotion headMotionOf(const geometry::Similarity& motion, const Eigen::Matr
 }
 
 void requireSaneOptions(const RigOptions& options) {
+  textureSolveOf(options);
   if (options.fit.iterations < 0 || options.fit.iterations > 1000) {
     throw InputError({"--iterations", "", "0 to 1000", fmt::format("{}", options.fit.iterations), ""});
   }
@@ -186,16 +188,26 @@ ShapeTextures addShapeTextures(const Capture& capture, const fs::path& directory
   const Package package = Package::open(directory);
   const compress::Face face = compress::readFace(capture, options.compress.region);
   const PackageMaps maps = openPackageMaps(capture, face, package);
-  const SkinFeatures features(inputs.subject.neutral, rig.examples, rig);
-  ShapeTextures textures{chooseSolve(options, rig.weights, features, maps, progress), rankOf(rig.weights)};
+  ShapeTextures textures;
+  textures.rank = rankOf(rig.weights);
+  std::optional<SkinFeatures> features;
+  SolveSet solve = [&](const Package& of, int set, const compress::GridMap& map) {
+    return strainShapes(of, set, inputs.subject.neutral, rig, map);
+  };
+  if (textureSolveOf(options) != TextureSolve::kStrain) {
+    features.emplace(inputs.subject.neutral, rig.examples, rig);
+    textures.chosen = chooseSolve(options, rig.weights, *features, maps, progress);
+    solve = [&](const Package& of, int set, const compress::GridMap& map) {
+      return solveShapes(of, set, textures.chosen.solver, *features, map, progress);
+    };
+  }
   if (textures.rank < static_cast<int>(capture.expressions.size())) {
     progress.note(
         fmt::format("the expressions' weights have rank {}, not {}: some repeat or combine others; of twins, "
                     "give one",
                     textures.rank, capture.expressions.size()));
   }
-  const double clamped = addShapeWeights(directory, inputs.package_expressions, inputs.rig_template.names,
-                                         textures.chosen.solver, features, maps, progress);
+  const double clamped = addShapeWeights(directory, inputs.package_expressions, inputs.rig_template.names, solve, maps);
   if (clamped > kMuchClamped) {
     progress.note(
         fmt::format("{:.1f} % of the shapes' weights lie beyond those of the captured expressions and are "
@@ -207,8 +219,10 @@ ShapeTextures addShapeTextures(const Capture& capture, const fs::path& directory
 
 void reportTextures(const ShapeTextures& textures, const RigOptions& options, RigReport& report) {
   report.texture_rank = textures.rank;
-  report.texture_solve = nameOf(options.texture_solve);
-  report.texture_damping = options.texture_solve == TextureSolve::kPseudoInverse ? 0.0 : textures.chosen.solver.damping;
+  const TextureSolve solve = textureSolveOf(options);
+  const bool damped = solve == TextureSolve::kLocal || solve == TextureSolve::kDamped;
+  report.texture_solve = nameOf(solve);
+  report.texture_damping = damped ? textures.chosen.solver.damping : 0.0;
   report.strain_share = textures.chosen.solver.strain_share;
   report.left_out_rmse = textures.chosen.left_out_rmse;
   report.left_out_nothing = textures.chosen.left_out_nothing;

@@ -18,27 +18,6 @@ constexpr double kUnreached = 0.005;
 /// Share of the captured weights' range by which the codes may reach farther at either end.
 constexpr double kFarther = 0.5;
 
-/// A set of weights as the package has it, [cell][C] by expression: column n is expression n.
-Eigen::MatrixXf decodeSet(const Package& package, int set) {
-  const PackageDescription& description = package.description();
-  const PackageWeights& weights = description.weights[static_cast<std::size_t>(set)];
-  const int channels = description.differences;
-  const Eigen::Index cells = static_cast<Eigen::Index>(weights.tile_width) * weights.tile_height;
-  Eigen::MatrixXf decoded(cells * channels, static_cast<Eigen::Index>(description.expressions.size()));
-  package::readWeightAtlas(
-      description, set, package.folder(), [&](int n, int row, int first, int count, std::span<const std::byte> codes) {
-        for (int x = 0; x < weights.tile_width; ++x) {
-          for (int i = 0; i < count; ++i) {
-            const auto c = static_cast<std::size_t>(first + i);
-            const int code = std::to_integer<int>(codes[static_cast<std::size_t>(x * count + i)]);
-            decoded((static_cast<Eigen::Index>(row) * weights.tile_width + x) * channels + first + i, n) =
-                static_cast<float>(weights.scale[c] * code + weights.offset[c]);
-          }
-        }
-      });
-  return decoded;
-}
-
 class ShapeSolver {
  public:
   ShapeSolver(const Package& package, int set, const TextureSolver& solver, const SkinFeatures& features,
@@ -157,6 +136,26 @@ class ShapeSolver {
 };
 
 }  // namespace
+
+Eigen::MatrixXf decodeSet(const Package& package, int set) {
+  const PackageDescription& description = package.description();
+  const PackageWeights& weights = description.weights[static_cast<std::size_t>(set)];
+  const int channels = description.differences;
+  const Eigen::Index cells = static_cast<Eigen::Index>(weights.tile_width) * weights.tile_height;
+  Eigen::MatrixXf decoded(cells * channels, static_cast<Eigen::Index>(description.expressions.size()));
+  package::readWeightAtlas(
+      description, set, package.folder(), [&](int n, int row, int first, int count, std::span<const std::byte> codes) {
+        for (int x = 0; x < weights.tile_width; ++x) {
+          for (int i = 0; i < count; ++i) {
+            const auto c = static_cast<std::size_t>(first + i);
+            const int code = std::to_integer<int>(codes[static_cast<std::size_t>(x * count + i)]);
+            decoded((static_cast<Eigen::Index>(row) * weights.tile_width + x) * channels + first + i, n) =
+                static_cast<float>(weights.scale[c] * code + weights.offset[c]);
+          }
+        }
+      });
+  return decoded;
+}
 
 ShapeCodes solveShapes(const Package& package, int set, const TextureSolver& solver, const SkinFeatures& features,
                        const compress::GridMap& map, Progress& progress) {

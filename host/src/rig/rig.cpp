@@ -208,11 +208,12 @@ ShapeTextures addShapeTextures(const Capture& capture, const fs::path& directory
                     textures.rank, capture.expressions.size()));
   }
   const double clamped = addShapeWeights(directory, inputs.package_expressions, inputs.rig_template.names, solve, maps);
-  if (clamped > kMuchClamped) {
+  const bool pseudo_inverse = textureSolveOf(options) == TextureSolve::kPseudoInverse;
+  if (clamped > (pseudo_inverse ? 0.0 : kMuchClamped)) {
     progress.note(
-        fmt::format("{:.1f} % of the shapes' weights lie beyond those of the captured expressions and are "
-                    "clamped: the expressions hardly tell some shapes apart",
-                    100.0 * clamped));
+        fmt::format("{:.2g} % of the shapes' weights lie far beyond those of the captured expressions and are "
+                    "clamped{}: the expressions hardly tell some shapes apart",
+                    100.0 * clamped, pseudo_inverse ? ", so that Eq. 10 does not hold there" : ""));
   }
   return textures;
 }

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "facezip/error.hpp"
+#include "facezip/geometry/float_origin.hpp"
 #include "facezip/version.hpp"
 
 namespace facezip::exporting {
@@ -219,7 +220,14 @@ tinygltf::Mesh makeMesh(const GltfScene& scene, tinygltf::Primitive primitive) {
   mesh.weights.assign(scene.targets.size(), 0.0);
   tinygltf::Value::Array names;
   for (const MorphTarget& target : scene.targets) names.emplace_back(target.name);
-  if (!names.empty()) mesh.extras = tinygltf::Value(tinygltf::Value::Object{{"targetNames", tinygltf::Value(names)}});
+  tinygltf::Value::Object extras;
+  if (!names.empty()) extras["targetNames"] = tinygltf::Value(names);
+  if (!scene.origin.isZero(0.0)) {
+    tinygltf::Value::Array origin;
+    for (const double metres : scene.metres_per_unit * scene.origin) origin.emplace_back(metres);
+    extras["origin"] = tinygltf::Value(origin);
+  }
+  if (!extras.empty()) mesh.extras = tinygltf::Value(extras);
   return mesh;
 }
 
@@ -288,6 +296,15 @@ Eigen::MatrixX3d vertexNormals(const Eigen::MatrixX3d& positions, const Eigen::M
     }
   }
   return normals;
+}
+
+Eigen::RowVector3d recentre(GltfScene& scene) {
+  const Eigen::RowVector3d origin = geometry::floatOrigin(scene.neutral.positions);
+  if (origin.isZero(0.0)) return origin;
+  scene.origin += origin;
+  scene.neutral.positions.rowwise() -= origin;
+  for (MorphTarget& target : scene.targets) target.positions.rowwise() -= origin;
+  return origin;
 }
 
 void writeGltf(const fs::path& file, const GltfScene& scene) {

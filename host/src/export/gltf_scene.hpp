@@ -24,6 +24,8 @@ struct GltfScene {
   geometry::TriangleMesh neutral;       ///< with or without UVs
   std::vector<MorphTarget> targets;     ///< weights start at 0; names go to mesh.extras.targetNames, where tools look
   double metres_per_unit = 1.0;         ///< glTF is in metres
+  /// That was taken from all positions, in their unit: recorded in mesh.extras.origin, in metres, where it is not zero.
+  Eigen::RowVector3d origin = Eigen::RowVector3d::Zero();
   std::string base_colour_texture;      ///< path relative to the file, "" for none
   std::string normal_texture;           ///< likewise; tangent space, +y up, as glTF asks
   nlohmann::json material_extras = {};  ///< an object, or null for none
@@ -41,6 +43,9 @@ SplitVertices splitVertices(const geometry::TriangleMesh& mesh);
 /// Unit normals of the vertices, #V by 3, weighted by the areas of their triangles; (0, 0, 1) where that is no
 /// direction.
 Eigen::MatrixX3d vertexNormals(const Eigen::MatrixX3d& positions, const Eigen::MatrixX3i& triangles);
+
+/// Takes geometry::floatOrigin() of the neutral from all positions, and returns it.
+Eigen::RowVector3d recentre(GltfScene& scene);
 
 /// Writes one mesh with normals, UVs (v down, as glTF has them) and morph targets of positions and normals; targets
 /// that move less than half of the vertices are stored sparsely. `.glb` gives one file; `.gltf` gives NAME.bin beside

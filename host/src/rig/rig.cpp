@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "compress/stage_clock.hpp"
+#include "facezip/geometry/float_origin.hpp"
 #include "facezip/package.hpp"
 #include "package/footprint.hpp"
 #include "package/safe_names.hpp"
@@ -231,9 +232,11 @@ void reportTextures(const ShapeTextures& textures, const RigOptions& options, Ri
 
 /// shapes/, rig.gltf and mesh.glb.
 void writeMeshes(const RigInputs& inputs, const RigFace& face, const geometry::ExampleRig& rig,
-                 const std::string& title, bool package_mesh, const fs::path& directory) {
+                 const std::string& title, bool package_mesh, const fs::path& directory, Progress& progress) {
   const std::vector<std::string>& shapes = inputs.rig_template.names;
   const Package package = Package::open(directory);
+  const Eigen::RowVector3d origin = geometry::floatOrigin(face.neutral.positions);
+  if (!origin.isZero(0.0)) progress.note(geometry::originNote(origin, "rig.gltf"));
   writeFace(directory, face, shapes, title, geometry::metresPerUnit(inputs.subject.unit), package.maps());
   if (package_mesh) writePackageMesh(directory, inputs.subject, rig, inputs.package_expressions, shapes, title);
 }
@@ -268,7 +271,7 @@ RigReport rigCapture(const Capture& capture, const fs::path& template_directory,
   const RigFace face = assembleFace(inputs.subject, inputs.rig_template, rig);
   report.vertices = static_cast<int>(face.neutral.positions.rows());
   report.parts = face.parts;
-  writeMeshes(inputs, face, rig, capture.name, options.compress.mesh, staged.path());
+  writeMeshes(inputs, face, rig, capture.name, options.compress.mesh, staged.path(), progress);
   io::writeTextFile(staged.path() / kRigFile, rigJson(report, inputs.subject.millimetresPerUnit()));
   clock.book("writing shapes");
   staged.commit();

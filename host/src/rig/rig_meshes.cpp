@@ -116,6 +116,7 @@ void writeFace(const std::filesystem::path& directory, const RigFace& face, cons
   scene.metres_per_unit = metres_per_unit;
   scene.base_colour_texture = neutralOf(maps, {"albedo", "diffuse", "basecolor", "base_color", "color", "colour"});
   scene.normal_texture = neutralOf(maps, {"normal", "normals"});
+  exporting::recentre(scene);
   exporting::writeGltf(directory / "rig.gltf", scene);
 }
 
@@ -132,6 +133,7 @@ void writePackageMesh(const std::filesystem::path& directory, const RigSubject& 
   for (std::size_t m = 0; m < shapes.size(); ++m) {
     scene.targets.push_back({shapes[m], subject.neutral.positions + rig.shapes[m]});
   }
+  exporting::recentre(scene);
   exporting::writeGltf(directory / package::kMeshFile, scene);
 }
 

@@ -20,10 +20,10 @@ struct MorphTarget {
 
 /// What writeGltf() writes.
 struct GltfScene {
-  std::string name;                     ///< of mesh and node
-  geometry::TriangleMesh neutral;       ///< with or without UVs
-  std::vector<MorphTarget> targets;     ///< weights start at 0; names go to mesh.extras.targetNames, where tools look
-  double metres_per_unit = 1.0;         ///< glTF is in metres
+  std::string name;                  ///< of mesh and node
+  geometry::TriangleMesh neutral;    ///< with or without UVs
+  std::vector<MorphTarget> targets;  ///< weights start at 0; names go to mesh.extras.targetNames, where tools look
+  double metres_per_unit = 1.0;      ///< glTF is in metres
   /// That was taken from all positions, in their unit: recorded in mesh.extras.origin, in metres, where it is not zero.
   Eigen::RowVector3d origin = Eigen::RowVector3d::Zero();
   std::string base_colour_texture;      ///< path relative to the file, "" for none
@@ -57,6 +57,8 @@ void writeGltf(const std::filesystem::path& file, const GltfScene& scene);
 struct GltfMaterial {
   std::string base_colour_texture;  ///< path relative to the file, "" for none
   std::string normal_texture;       ///< likewise
+  std::string roughness_texture;    ///< likewise
+  std::string occlusion_texture;    ///< likewise
   nlohmann::json extras;            ///< an object, or null for none
 };
 

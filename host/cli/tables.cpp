@@ -161,6 +161,10 @@ void printCompressReport(const CompressReport& report) {
     fmt::print("\n");
   }
   for (const auto& [map, rmse] : report.rmse) fmt::print("{}: RMSE {:.3f} (0..255)\n", map, rmse);
+  if (report.pooled_rmse && (report.rmse.size() > 1 || report.rate)) {
+    fmt::print("all maps: RMSE {:.3f}{}\n", *report.pooled_rmse,
+               report.rate ? fmt::format(", expected were {:.3f}", report.rate->rmse) : "");
+  }
   fmt::print("package on disk {}, peak memory {}\n\n", formatMegabytes(report.package_disk_bytes),
              formatMegabytes(report.peak_memory_bytes));
   printSeconds(report.seconds);

@@ -16,14 +16,17 @@
 #include "exit_codes.hpp"
 #include "facezip/device.hpp"
 #include "facezip/error.hpp"
+#include "facezip/printable.hpp"
 #include "facezip/progress.hpp"
 #include "facezip/version.hpp"
+#include "terminal.hpp"
+#include "usage.hpp"
 
 namespace facezip::cli {
 namespace {
 
 int fail(ExitCode code, const std::string& what) {
-  std::fputs(("facezip: error: " + what + "\n").c_str(), stderr);
+  printError("facezip: error: " + what + "\n");
   return code;
 }
 
@@ -56,8 +59,8 @@ int runCommand(CLI::App& app, int argc, char** argv) {
   } catch (const CLI::Success& request) {
     return app.exit(request);  // --help, --version
   } catch (const CLI::ParseError& error) {
-    app.exit(error);
-    return kExitUsage;
+    const std::string fault = usageFault(app, error, argc, argv);
+    return fail(kExitUsage, printable(fault) + "\nRun with --help for more information.");
   } catch (const Cancelled&) {
     return fail(kExitCancelled, "cancelled; nothing was written");
   } catch (const InputError& error) {
@@ -71,7 +74,7 @@ int runCommand(CLI::App& app, int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return fail(kExitInternal, "out of memory; lower --memory");
   } catch (const std::exception& error) {
-    return std::ferror(stdout) != 0 ? failToPrint() : fail(kExitInternal, error.what());
+    return std::ferror(stdout) != 0 ? failToPrint() : fail(kExitInternal, printable(error.what()));
   }
 }
 
@@ -88,7 +91,6 @@ int main(int argc, char** argv) {
   app.name("facezip");
   app.set_version_flag("--version", "facezip " FACEZIP_VERSION);
   app.require_subcommand(1);
-  app.failure_message(CLI::FailureMessage::simple);
   app.get_formatter()->column_width(34);
   CommonOptions common;
   app.add_flag("-q,--quiet", common.quiet, "No progress and no notes on standard error");

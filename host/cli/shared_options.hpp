@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "facezip/compress.hpp"
+#include "facezip/package.hpp"
 
 namespace facezip::cli {
 
@@ -20,10 +21,15 @@ void addSeedOption(CLI::App& command, std::uint64_t& seed, const std::string& de
 /// --maps a,b
 void addMapsOption(CLI::App& command, std::vector<std::string>& maps, const std::string& description);
 
+/// The maps of a package, to open its capture with: other folders of that do not matter then.
+std::vector<std::string> mapNames(const Package& package);
+
 /// The texts behind CompressOptions, before they are parsed.
 struct CompressArguments {
   std::string method = "refined";
   std::string permutation_solver = "best";
+  std::string texture_format = "png";
+  std::string difference_format;
   std::string mask_radius = "3cm";
   std::optional<int> masks;
   std::optional<double> target_rmse;

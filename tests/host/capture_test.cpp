@@ -4,13 +4,16 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "facezip/printable.hpp"
 #include "io/staged_directory.hpp"
+#include "notes.hpp"
 #include "small_capture.hpp"
 #include "temporary_directory.hpp"
 
 namespace facezip {
 namespace {
 namespace fs = std::filesystem;
+using test::Notes;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -67,13 +70,6 @@ TEST(Capture, ImportanceIsFoundOrNamed) {
   EXPECT_THAT(failure(folder / "c"), HasSubstr("importance: expected a string"));
 }
 
-/// Keeps what is noted.
-class Notes : public Progress {
- public:
-  void note(std::string_view message) override { all.emplace_back(message); }
-  std::vector<std::string> all;
-};
-
 TEST(Capture, MeshesAreFoundWhateverTheCaseOfTheirExtension) {
   const test::TemporaryDirectory folder;
   test::writeSmallCapture(folder / "c", {.expressions = 2, .width = 8, .height = 8});
@@ -102,7 +98,7 @@ TEST(Capture, MeshesThatMatchNoExpressionAreNoted) {
     openCapture(folder / "c", {}, &notes);
     return notes.all;
   };
-  EXPECT_THAT(notesWith({}), testing::IsEmpty());
+  EXPECT_THAT(notesWith({}), ElementsAre(HasSubstr("no meshes of expressions: textures will change")));
   EXPECT_THAT(notesWith({"e00.obj", "e01.obj", "e02.obj", "neutral.obj", "notes.txt"}), testing::IsEmpty());
   EXPECT_THAT(notesWith({"e00.obj", "e01.obj"}), ElementsAre(HasSubstr("expressions: no mesh for e02 (")));
   EXPECT_THAT(notesWith({"E00.obj", "e01.obj", "e02.obj"}),
@@ -110,6 +106,173 @@ TEST(Capture, MeshesThatMatchNoExpressionAreNoted) {
   EXPECT_THAT(notesWith({"a0.obj", "a1.obj", "a2.obj", "a3.obj", "a4.obj", "a5.obj", "a6.obj", "a7.obj", "a8.obj",
                          "a9.obj", "e00.obj", "e01.obj", "e02.obj"}),
               ElementsAre(HasSubstr("a6.obj, a7.obj and 2 more match no expression (")));
+}
+
+TEST(Capture, MeshesInAnotherPlaceAreFoundOrNamed) {
+  const test::TemporaryDirectory folder;
+  const fs::path c = folder / "c";
+  test::writeSmallCapture(c, {.expressions = 2, .width = 8, .height = 8});
+  const auto put = [&](const fs::path& file) {
+    fs::create_directories((c / file).parent_path());
+    fs::copy_file(c / "neutral.obj", c / file);
+  };
+  Notes notes;
+  const auto open = [&] {
+    notes.all.clear();
+    return openCapture(c, {}, &notes).expression_meshes;
+  };
+  for (const fs::path place : {"Expressions", "meshes", ""}) {
+    put(place / "e00.obj");
+    put(place / "other.obj");
+    EXPECT_THAT(open(), ElementsAre(c / place / "e00.obj", fs::path())) << place;
+    ASSERT_FALSE(notes.all.empty());
+    EXPECT_THAT(notes.all.front(), testing::AllOf(HasSubstr((place.empty() ? c : c / place).string() + ": taken for")));
+    EXPECT_THAT(notes.all.back(), HasSubstr("no mesh for e01"));
+    fs::remove(c / place / "other.obj");
+    if (place.empty())
+      fs::remove(c / "e00.obj");
+    else
+      fs::rename(c / place, folder / place);
+  }
+  // expressions/ goes first, and several others are a question.
+  fs::rename(folder / "meshes", c / "meshes");
+  fs::rename(folder / "Expressions", c / "more");
+  EXPECT_THAT(open(), ElementsAre(fs::path(), fs::path()));
+  EXPECT_THAT(notes.all, ElementsAre(HasSubstr("meshes/ and more/ hold some, and none is taken; meshes belong in")));
+  put("expressions/e01.obj");
+  EXPECT_THAT(open(), ElementsAre(fs::path(), c / "expressions/e01.obj"));
+  // A template has a neutral of its own.
+  fs::remove_all(c / "expressions");
+  fs::remove_all(c / "more");
+  put("meshes/neutral.obj");
+  EXPECT_THAT(open(), ElementsAre(fs::path(), fs::path()));
+  EXPECT_THAT(notes.all, ElementsAre(HasSubstr("meshes/ holds OBJ files that are not taken; meshes belong in")));
+  // As FaceScape calls them, whatever else lies there.
+  put("models_reg/2_smile.obj");
+  io::writeTextFile(c / "capture.json", R"({"expression_meshes": {"e00": "models_reg/2_smile.obj"}})");
+  EXPECT_THAT(open(), ElementsAre(c / "models_reg/2_smile.obj", fs::path()));
+  io::writeTextFile(c / "capture.json", R"({"expression_meshes": {"e0O": "models_reg/2_smile.obj"}})");
+  EXPECT_THAT(failure(c), testing::AllOf(HasSubstr("expression_meshes"), HasSubstr("e0O")));
+  io::writeTextFile(c / "capture.json", R"({"expression_meshes": {"e00": 3}})");
+  EXPECT_THAT(failure(c), HasSubstr("expression_meshes.e00: expected a string"));
+}
+
+// "e" and an accent, as macOS names files, is the letter that keyboards give.
+TEST(Capture, NamesAreComparedAsTheyLook) {
+  const test::TemporaryDirectory folder;
+  const fs::path c = folder / "cafe\u0301";
+  test::writeSmallCapture(c, {.expressions = 2, .width = 8, .height = 8, .maps = {"albedo", "normal"}});
+  fs::rename(c / "albedo/e00.png", c / "albedo/e\u0301.png");
+  fs::rename(c / "normal/e00.png", c / "normal/\u00e9.png");
+  fs::create_directory(c / "expressions");
+  for (const char* mesh : {"e\u0301.obj", "e01.obj"}) fs::copy_file(c / "neutral.obj", c / "expressions" / mesh);
+  Notes notes;
+  const Capture capture = openCapture(c, {}, &notes);
+  EXPECT_EQ(capture.name, "caf\u00e9");
+  EXPECT_THAT(capture.expressions, ElementsAre("e01", "\u00e9"));
+  EXPECT_EQ(capture.maps[0].expressions[1], c / "albedo/e\u0301.png") << "files keep theirs";
+  EXPECT_THAT(capture.expression_meshes, ElementsAre(c / "expressions/e01.obj", c / "expressions/e\u0301.obj"));
+  EXPECT_THAT(notes.all, testing::IsEmpty());
+
+  fs::rename(c / "normal", c / "no\u0308rmal");
+  EXPECT_EQ(openCapture(c, {"n\u00f6rmal"}).maps.at(0).name, "n\u00f6rmal");
+  io::writeTextFile(c / "capture.json", R"({"expressions": ["\u00e9", "e01"], "maps": {"n\u00f6rmal": {}},
+                                            "expression_meshes": {"e\u0301": "neutral.obj"}})");
+  EXPECT_THAT(openCapture(c).expression_meshes, ElementsAre(c / "neutral.obj", c / "expressions/e01.obj"));
+  io::writeTextFile(c / "capture.json",
+                    R"({"expression_meshes": {"e\u0301": "neutral.obj", "\u00e9": "neutral.obj"}})");
+  EXPECT_THAT(failure(c), HasSubstr("expression_meshes: expected each name once"));
+  fs::remove(c / "capture.json");
+  fs::copy_file(c / "albedo/e01.png", c / "albedo/\u00e9.png");
+  EXPECT_THAT(failure(c), HasSubstr("expected one texture"));
+  fs::remove(c / "albedo/\u00e9.png");
+  fs::copy_file(c / "neutral.obj", c / "expressions/\u00e9.obj");
+  EXPECT_THAT(failure(c), HasSubstr("expected one file, got two, whose names"));
+}
+
+TEST(Capture, FoldersOfPreviewsAndReferencesAreNoMaps) {
+  const test::TemporaryDirectory folder;
+  const fs::path c = folder / "c";
+  test::writeSmallCapture(c, {.expressions = 2, .width = 8, .height = 8});
+  fs::create_directory(c / "expressions");
+  for (const char* name : {"e00", "e01"}) {
+    fs::copy_file(c / "neutral.obj", c / "expressions" / (std::string(name) + ".obj"));
+    fs::copy_file(c / "albedo/e00.png", c / "expressions" / (std::string(name) + ".png"));
+  }
+  fs::create_directory(c / "reference");
+  for (const char* name : {"left.png", "left.tif", "right.png"}) {
+    fs::copy_file(c / "albedo/e00.png", c / "reference" / name);
+  }
+  Notes notes;
+  const Capture capture = openCapture(c, {}, &notes);
+  ASSERT_EQ(capture.maps.size(), 1u);
+  EXPECT_THAT(capture.expressions, ElementsAre("e00", "e01"));
+  EXPECT_THAT(notes.all, ElementsAre(HasSubstr("expressions: its images are no map's, since meshes are there"),
+                                     HasSubstr("reference: its images are no map's, since none is the neutral's")));
+  fs::copy_file(c / "albedo/e00.png", c / "expressions/neutral.png");
+  EXPECT_EQ(openCapture(c).maps.size(), 1u);
+  EXPECT_EQ(openCapture(c, {"expressions"}).maps.size(), 1u) << "by its name it is one";
+  // What lacks its neutral, or an expression, is a map to be mended: nothing of it is dropped silently.
+  fs::rename(c / "reference/left.png", c / "reference/e00.png");
+  EXPECT_THAT(failure(c), testing::AllOf(HasSubstr("reference/neutral.png: map \"reference\""),
+                                         HasSubstr("leave reference/ out with --maps albedo, or list")));
+  // Where nothing else is a map, the images beside the meshes are.
+  fs::rename(c / "albedo", folder / "albedo");
+  fs::rename(c / "reference", folder / "reference");
+  EXPECT_EQ(openCapture(c).maps.at(0).name, "expressions");
+}
+
+TEST(Capture, OfFaceScapeIsDescribedNotRenamed) {
+  const test::TemporaryDirectory folder;
+  const fs::path c = folder / "122";
+  test::writeSmallCapture(folder / "small", {.expressions = 2, .width = 8, .height = 8});
+  for (const char* name : {"1_neutral", "2_smile", "3_mouth_stretch"}) {
+    for (const char* to : {"models_reg/NAME.obj", "models_reg/NAME.jpg", "dpmap/NAME.png"}) {
+      const fs::path file = c / std::string(to).replace(std::string(to).find("NAME"), 4, name);
+      fs::create_directories(file.parent_path());
+      fs::copy_file(folder / (file.extension() == ".obj" ? "small/neutral.obj" : "small/albedo/e00.png"), file);
+    }
+  }
+  io::writeTextFile(c / "capture.json", R"({"neutral": "1_neutral", "meshes": "models_reg",
+      "maps": {"albedo": {"folder": "models_reg", "colour_space": "sRGB"}, "displacement": {"folder": "dpmap"}}})");
+  Notes notes;
+  const Capture capture = openCapture(c, {}, &notes);
+  EXPECT_THAT(notes.all, testing::IsEmpty());
+  EXPECT_EQ(capture.neutral_mesh, c / "models_reg/1_neutral.obj");
+  EXPECT_THAT(capture.expressions, ElementsAre("2_smile", "3_mouth_stretch"));
+  EXPECT_EQ(capture.expression_meshes[0], c / "models_reg/2_smile.obj");
+  ASSERT_EQ(capture.maps.size(), 2u);
+  EXPECT_EQ(capture.maps[0].neutral, c / "models_reg/1_neutral.jpg");
+  EXPECT_EQ(capture.maps[1].expressions[1], c / "dpmap/3_mouth_stretch.png");
+  io::writeTextFile(c / "capture.json", R"({"neutral": "1_neutral", "neutral_mesh": "models_reg/1_neutral.obj",
+      "meshes": "model_reg", "maps": {"albedo": {"folder": "models_reg"}}})");
+  EXPECT_THAT(failure(c), testing::AllOf(HasSubstr("capture.json: meshes: expected a folder of OBJ files"),
+                                         HasSubstr("model_reg, which is not there")));
+}
+
+TEST(Capture, NeutralsOfTheIctFaceKitAreFound) {
+  const test::TemporaryDirectory folder;
+  const fs::path c = folder / "c";
+  test::writeSmallCapture(c, {.expressions = 2, .width = 8, .height = 8});
+  fs::rename(c / "neutral.obj", c / "generic_neutral_mesh.obj");
+  for (const char* name : {"identity000.obj", "e00.obj", "e01.obj"}) {
+    fs::copy_file(c / "generic_neutral_mesh.obj", c / name);
+  }
+  Notes notes;
+  const Capture capture = openCapture(c, {}, &notes);
+  EXPECT_EQ(capture.neutral_mesh, c / "generic_neutral_mesh.obj");
+  EXPECT_THAT(capture.expression_meshes, ElementsAre(c / "e00.obj", c / "e01.obj"));
+  EXPECT_THAT(notes.all, ElementsAre(HasSubstr("taken for the meshes")));
+  fs::copy_file(c / "generic_neutral_mesh.obj", c / "neutral.obj");
+  EXPECT_EQ(openCapture(c).neutral_mesh, c / "neutral.obj");
+}
+
+TEST(Capture, HasTheNameOfItsDirectoryHoweverThatIsWritten) {
+  const test::TemporaryDirectory folder;
+  test::writeSmallCapture(folder / "bob", {.expressions = 1, .width = 8, .height = 8});
+  for (const char* path : {"bob", "bob/", "bob//", "bob/.", "bob/albedo/.."}) {
+    EXPECT_EQ(openCapture(folder / path).name, "bob") << path;
+  }
 }
 
 TEST(Capture, FoldersThatCannotBeReadAreRefused) {
@@ -224,12 +387,12 @@ TEST(Capture, RefusesFilesWhoseNamesAPackageCannotHold) {
   for (const std::string& name :
        {std::string("a..b"), std::string(201, 'a'), std::string("a\xff"), std::string("a\t")}) {
     fs::rename(capture / "normal", capture / name);
-    EXPECT_THAT(failure(capture), HasSubstr((capture / name).string() + ": map: expected a name "));
+    EXPECT_THAT(failure(capture), HasSubstr(printable((capture / name).string()) + ": map: expected a name "));
     EXPECT_EQ(openCapture(capture, {"albedo"}).maps.size(), 1u) << "what is not taken does not matter";
     fs::rename(capture / name, capture / "normal");
     for (const char* map : {"albedo", "normal"}) fs::rename(capture / map / "e01.png", capture / map / (name + ".png"));
     EXPECT_THAT(failure(capture),
-                HasSubstr((capture / "albedo" / (name + ".png")).string() + ": expression: expected"));
+                HasSubstr(printable((capture / "albedo" / (name + ".png")).string()) + ": expression: expected"));
     for (const char* map : {"albedo", "normal"}) fs::rename(capture / map / (name + ".png"), capture / map / "e01.png");
   }
   fs::rename(capture, folder / "c\xff");

@@ -422,6 +422,7 @@ TEST_F(GuessTest, TablesAndObjectsAreRead) {
   expected << 0.25, 1, 0, 0.5;
   EXPECT_EQ(read("g.csv", "expression,down,up\nsad,0.5,0\nhappy,1,0.25\n"), expected);
   EXPECT_EQ(read("g.json", R"({"happy": {"up": 0.25, "down": 1}, "sad": {"down": 0.5}})"), expected);
+  EXPECT_EQ(read("g.csv", "expression,Down,UP\nSad,0.5,0\nhappy,1,0.25\n"), expected) << "names of one shape";
 }
 
 TEST_F(GuessTest, AShapeDrivenBeyondOneIsFullyOn) {
@@ -431,6 +432,8 @@ TEST_F(GuessTest, AShapeDrivenBeyondOneIsFullyOn) {
 
 TEST_F(GuessTest, BadOnesAreRefused) {
   refuses("g.csv", "expression,up,sideways\nhappy,0,0\nsad,0,0\n", "sideways");
+  refuses("g.csv", "expression,up,Up\nhappy,0,0\nsad,0,0\n", "each shape once");
+  refuses("g.json", R"({"happy": {"up": 0.25, "Up": 1}, "sad": {}})", "each shape once");
   refuses("g.csv", "expression,up,down\nhappy,0,50\nsad,0,0\n", "from 0 to 1");
   refuses("g.csv", "expression,up,down\nhappy,0,nan\nsad,0,0\n", "from 0 to 1");
   refuses("g.csv", "expression,up,down\nhappy,0\nsad,0,0\n", "3 columns");

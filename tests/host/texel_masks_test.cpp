@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "facezip/geometry/surface_sampling.hpp"
-#include "raster/weight_grid.hpp"
+#include "raster/grid_masks.hpp"
 #include "small_capture.hpp"
 
 namespace facezip {
@@ -134,10 +134,10 @@ TEST(WeightGrid, CellsSumToOneEverywhere) {
   const MaskedPatch patch;
   const raster::UvRaster raster(patch.mesh, patch.triangles, 93, 61, 7);
   for (const int scale : {1, 4, 8}) {
-    const raster::WeightGrid grid = raster::makeWeightGrid(patch.texels, raster, scale);
-    EXPECT_EQ(grid.width, (93 + scale - 1) / scale);
-    EXPECT_EQ(grid.height, (61 + scale - 1) / scale);
-    ASSERT_EQ(grid.cells.cells(), static_cast<std::size_t>(grid.width * grid.height));
+    const raster::GridMasks grid = raster::makeGridMasks(patch.texels, raster, scale);
+    EXPECT_EQ(grid.columns, (93 + scale - 1) / scale);
+    EXPECT_EQ(grid.rows, (61 + scale - 1) / scale);
+    ASSERT_EQ(grid.cells.cells(), static_cast<std::size_t>(grid.columns * grid.rows));
     for (std::size_t c = 0; c < grid.cells.cells(); ++c) {
       float sum = 0.0f;
       for (int e = grid.cells.cell_begin[c]; e < grid.cells.cell_begin[c + 1]; ++e)

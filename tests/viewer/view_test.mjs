@@ -135,6 +135,10 @@ const tests = {
       assert.equal((await said(text)).includes('1 frames'), wanted, JSON.stringify(text));
     }
     assert.match(await said(`${names[0]}\n-1000000\n`), /1 frames/);
+    // Of face trackers: time and turns of the head, columns of nobody, per cent, rows without a face.
+    const tracked = 'Timecode,BlendShapeCount,' + names[0].toUpperCase() + ',nobody,HeadYaw\n00:00:01:02.3,61,70,x,0.1\n00:00:01:03.3,0\n';
+    assert.ok(taken(tracked));
+    assert.match(await said(tracked), /2 frames; no expression is called nobody; weights up to 70: 1 is the whole/);
     for (const weight of ['1000001', '-2e6', '1e39', '0x10']) {
       assert.match(await said(`${names[0]}\n${weight}\n`), /line 2, column 1: ".*" is not a number from -1000000 to 1000000/);
     }

@@ -8,90 +8,18 @@
 #include <set>
 
 #include "capture/capture_json.hpp"
+#include "capture/expression_meshes.hpp"
+#include "capture/found_maps.hpp"
+#include "capture/mesh_names.hpp"
 #include "facezip/geometry/obj_io.hpp"
-#include "image/input_extensions.hpp"
+#include "facezip/input_file.hpp"
+#include "io/composed.hpp"
 #include "package/package_json.hpp"
 #include "package/safe_names.hpp"
 
 namespace facezip {
 namespace fs = std::filesystem;
 namespace {
-
-constexpr const char* kCaptureFile = "capture.json";
-
-/// By its name: what has one and is no file must not be left out, or its expression would be. A name that starts with a
-/// dot is the desktop's or an unfinished copy, not a texture.
-bool isImage(const fs::path& path) { return image::hasImageExtension(path) && path.filename().string().front() != '.'; }
-
-/// What a folder holds, by name.
-std::vector<fs::directory_entry> entriesOf(const fs::path& folder) {
-  std::error_code error;
-  std::vector<fs::directory_entry> entries;
-  for (fs::directory_iterator entry(folder, error); !error && entry != fs::directory_iterator();
-       entry.increment(error)) {
-    entries.push_back(*entry);
-  }
-  if (error) {
-    throw InputError({folder.string(), "", "a folder that can be read", error.message(), "check its permissions"});
-  }
-  std::sort(entries.begin(), entries.end());
-  return entries;
-}
-
-/// Image files of a folder by stem. Two files with the same stem would be two textures of one expression.
-std::map<std::string, fs::path> imagesByName(const fs::path& folder) {
-  std::map<std::string, fs::path> images;
-  for (const fs::directory_entry& entry : entriesOf(folder)) {
-    std::error_code ignored;
-    if (!entry.is_regular_file(ignored) || !isImage(entry.path())) continue;
-    const auto [it, inserted] = images.emplace(entry.path().stem().string(), entry.path());
-    if (inserted) continue;
-    std::set<std::string> both = {it->second.filename().string(), entry.path().filename().string()};
-    throw InputError({folder.string(), fmt::format("expression \"{}\"", it->first), "one texture",
-                      fmt::format("{}", fmt::join(both, " and ")), "remove or rename one"});
-  }
-  return images;
-}
-
-/// The textures of one map before the expressions' order is known.
-struct FoundMap {
-  CaptureJson::Map description;
-  fs::path folder;
-  fs::path source;  ///< what names the map: its folder, or capture.json
-  std::map<std::string, fs::path> images;
-};
-
-std::map<std::string, FoundMap> findMaps(const fs::path& directory, const CaptureJson& description) {
-  std::map<std::string, FoundMap> maps;
-  for (const fs::directory_entry& entry : entriesOf(directory)) {
-    const std::string name = entry.path().filename().string();
-    std::error_code ignored;
-    if (!entry.is_directory(ignored) || name.front() == '.') continue;
-    const bool described = description.maps.contains(name);
-    // A description is complete: folders that it does not name (renders, references) are not maps.
-    if (!described && !description.maps.empty()) continue;
-    std::map<std::string, fs::path> images = imagesByName(entry.path());
-    if (!described && images.empty()) continue;
-    maps[name] = {described ? description.maps.at(name) : CaptureJson::Map{}, entry.path(), entry.path(),
-                  std::move(images)};
-  }
-  for (const auto& [name, map] : description.maps) {
-    FoundMap& found = maps.try_emplace(name, FoundMap{map, directory / name, {}, {}}).first->second;
-    found.source = directory / kCaptureFile;
-    if (!map.neutral.empty()) found.images["neutral"] = directory / map.neutral;
-    for (const auto& [expression, file] : map.expressions) found.images[expression] = directory / file;
-  }
-  return maps;
-}
-
-/// A map that capture.json names may have no folder, or an empty one.
-void requireTextures(const std::string& name, const FoundMap& map) {
-  if (!map.images.empty()) return;
-  std::error_code error;
-  throw InputError({map.folder.string(), fmt::format("map \"{}\"", name), "a folder of textures",
-                    fs::exists(map.folder, error) ? "no image in it" : "no such folder",
-                    "add the textures, or take the map out of capture.json"});
-}
 
 void requireUnique(const std::vector<std::string>& names, const fs::path& file) {
   std::set<std::string> seen;
@@ -129,27 +57,6 @@ std::vector<std::string> expressionNames(const fs::path& directory, const Captur
   return names;
 }
 
-fs::path textureOf(const FoundMap& map, const std::string& map_name, const std::string& name) {
-  const auto found = map.images.find(name);
-  std::error_code error;
-  if (found != map.images.end() && fs::exists(found->second, error)) return found->second;
-  const fs::path missing = found != map.images.end() ? found->second : map.folder / (name + ".png");
-  throw InputError(
-      {missing.string(), fmt::format("map \"{}\"", map_name),
-       name == "neutral" ? "the texture of the neutral" : fmt::format("the texture of expression \"{}\"", name),
-       "no such file", "add the texture, or take the map or expression out"});
-}
-
-CaptureMap makeMap(const std::string& name, const FoundMap& found, const std::vector<std::string>& expressions) {
-  CaptureMap map;
-  map.name = name;
-  map.colour_space = found.description.colour_space;
-  map.metric_weight = found.description.weight;
-  map.neutral = textureOf(found, name, "neutral");
-  for (const std::string& expression : expressions) map.expressions.push_back(textureOf(found, name, expression));
-  return map;
-}
-
 std::vector<std::string> chooseMaps(const fs::path& directory, const std::map<std::string, FoundMap>& found,
                                     const std::vector<std::string>& wanted) {
   std::vector<std::string> names;
@@ -166,63 +73,35 @@ std::vector<std::string> chooseMaps(const fs::path& directory, const std::map<st
   return wanted.empty() ? names : wanted;
 }
 
-/// The expressions' meshes by name; the folder may be absent.
-std::map<std::string, fs::path> meshesByName(const fs::path& folder) {
-  std::map<std::string, fs::path> meshes;
-  std::error_code error;
-  if (!fs::exists(folder, error) && !error) return meshes;
-  for (const fs::path& file : geometry::objFiles(folder)) meshes.emplace(file.stem().string(), file);
-  return meshes;
-}
-
-/// "a, b, c and 9 more"
-std::string listed(const std::vector<std::string>& names) {
-  constexpr std::size_t kMostListed = 8;
-  const std::size_t shown = names.size() > kMostListed + 1 ? kMostListed : names.size();
-  const std::string more = shown < names.size() ? fmt::format(" and {} more", names.size() - shown) : "";
-  return fmt::format("{}{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "), more);
-}
-
-/// Says which meshes stay unused and who lacks one: a misspelt name would otherwise go unnoticed.
-void noteUnmatchedMeshes(const fs::path& folder, const std::map<std::string, fs::path>& meshes,
-                         const std::vector<std::string>& expressions, Progress& progress) {
-  std::vector<std::string> unused, lacking;
-  for (const auto& [name, file] : meshes) {
-    const bool known = std::find(expressions.begin(), expressions.end(), name) != expressions.end();
-    if (!known && name != "neutral") unused.push_back(file.filename().string());
-  }
-  for (const std::string& name : expressions) {
-    if (!meshes.contains(name)) lacking.push_back(name);
-  }
-  std::string text;
-  if (!unused.empty()) {
-    text = fmt::format("{} match{} no expression", listed(unused), unused.size() == 1 ? "es" : "");
-  }
-  if (!lacking.empty() && !meshes.empty()) {
-    text += fmt::format("{}no mesh for {}", text.empty() ? "" : "; ", listed(lacking));
-  }
-  if (!text.empty()) progress.note(fmt::format("{}: {} (meshes are named as textures are)", folder.string(), text));
-}
-
-/// The mesh of the neutral: as capture.json names it, else neutral.obj, its extension in any case.
+/// The mesh of the neutral: as capture.json names it, else neutral.obj, its extension in any case, else with the meshes
+/// of the expressions.
 fs::path neutralMesh(const fs::path& directory, const CaptureJson& description) {
   if (!description.neutral_mesh.empty()) return directory / description.neutral_mesh;
-  for (const fs::path& file : geometry::objFiles(directory)) {
-    if (file.stem() == "neutral") return file;
+  std::vector<fs::path> folders = {directory};
+  if (!description.meshes.empty()) folders.push_back(directory / description.meshes);
+  for (const fs::path& folder : folders) {
+    std::map<std::string, fs::path> found;  // "neutral" goes last, and before what others call it
+    for (const fs::path& file : geometry::objFiles(folder)) {
+      const std::string name = io::composed(file.stem().string());
+      if (description.neutral.empty() ? isNeutralMesh(name) : name == description.neutral) found.emplace(name, file);
+    }
+    if (!found.empty()) return found.rbegin()->second;
   }
-  return directory / "neutral.obj";
+  return directory / ((description.neutral.empty() ? "neutral" : description.neutral) + ".obj");
 }
 
 std::optional<fs::path> optionalFile(const fs::path& directory, const std::string& named, const std::string& usual) {
-  if (!named.empty()) return directory / named;  // named in capture.json: a missing one is an error when it is read
+  // What capture.json names, or stands there as a link that leads nowhere, is an error when it is read.
+  if (!named.empty()) return directory / named;
   std::error_code error;
-  if (fs::exists(directory / usual, error)) return directory / usual;
+  if (fs::exists(fs::symlink_status(directory / usual, error))) return directory / usual;
   return std::nullopt;
 }
 
 /// The name of a capture that has none of its own.
 std::string nameOf(const fs::path& directory) {
-  const std::string name = fs::absolute(directory).lexically_normal().filename().string();
+  const fs::path path = fs::absolute(directory).lexically_normal();  // "face/" ends in an empty name
+  const std::string name = io::composed((path.has_filename() ? path : path.parent_path()).filename().string());
   if (!package::isUtf8(name)) {
     throw InputError({directory.string(), "name", "a name in UTF-8", package::quoted(name),
                       "rename the directory, or name the capture in capture.json"});
@@ -251,17 +130,19 @@ Capture openCapture(const fs::path& directory, const std::vector<std::string>& m
                       fs::exists(directory, error) ? "a file" : "no such directory", ""});
   }
   const CaptureJson description = readCaptureJson(directory / kCaptureFile).value_or(CaptureJson{});
-  const std::map<std::string, FoundMap> found = findMaps(directory, description);
+  std::vector<std::string> wanted;
+  for (const std::string& name : map_names) wanted.push_back(io::composed(name));
+  const std::map<std::string, FoundMap> found = findMaps(directory, description, wanted, progress);
 
   Capture capture;
   capture.directory = directory;
   capture.name = description.name.empty() ? nameOf(directory) : description.name;
   capture.unit = description.unit;
   capture.neutral_mesh = neutralMesh(directory, description);
-  if (!fs::exists(capture.neutral_mesh, error)) {
-    throw InputError({capture.neutral_mesh.string(), "", "the mesh of the neutral", "no such file", ""});
+  if (const std::string fault = faultOfFile(capture.neutral_mesh); !fault.empty()) {
+    throw InputError({capture.neutral_mesh.string(), "", "the mesh of the neutral", fault, ""});
   }
-  const std::vector<std::string> chosen = chooseMaps(directory, found, map_names);
+  const std::vector<std::string> chosen = chooseMaps(directory, found, wanted);
   std::map<std::string, FoundMap> used;
   for (const std::string& name : chosen) {
     used[name] = found.at(name);
@@ -270,17 +151,33 @@ Capture openCapture(const fs::path& directory, const std::vector<std::string>& m
   }
   capture.expressions = expressionNames(directory, description, used);
   for (const std::string& name : chosen) requireKnownExpressions(name, description, capture.expressions, directory);
-  for (const std::string& name : chosen) capture.maps.push_back(makeMap(name, used.at(name), capture.expressions));
-  const std::map<std::string, fs::path> meshes = meshesByName(directory / "expressions");
-  for (const std::string& name : capture.expressions) {
-    const auto mesh = meshes.find(name);
-    capture.expression_meshes.push_back(mesh != meshes.end() ? mesh->second : fs::path());
+  for (const std::string& name : chosen)
+    capture.maps.push_back(makeMap(name, used.at(name), capture.expressions, chosen));
+  for (const auto& [name, file] : description.expression_meshes) {
+    if (std::ranges::find(capture.expressions, name) != capture.expressions.end()) continue;
+    throw InputError({(directory / kCaptureFile).string(), "expression_meshes", "expressions of the capture",
+                      package::quoted(name), ""});
   }
-  if (progress != nullptr) noteUnmatchedMeshes(directory / "expressions", meshes, capture.expressions, *progress);
+  capture.expression_meshes = findExpressionMeshes(directory, description, capture.expressions, progress);
   capture.face_region = optionalFile(directory, description.face_region, "face_region.txt");
   capture.coverage = optionalFile(directory, description.coverage, "coverage.png");
   capture.importance = optionalFile(directory, description.importance, "importance.png");
   return capture;
+}
+
+ProtectedPaths inputsOf(const Capture& capture) {
+  const std::string what = "the capture that is read";
+  ProtectedPaths inputs;
+  inputs.add(capture.directory, what).addFile(capture.neutral_mesh, what);
+  for (const auto& file : {capture.face_region, capture.coverage, capture.importance}) {
+    inputs.addFile(file.value_or(fs::path()), what);
+  }
+  for (const fs::path& mesh : capture.expression_meshes) inputs.addFile(mesh, what);
+  for (const CaptureMap& map : capture.maps) {
+    inputs.addFile(map.neutral, what);
+    for (const fs::path& texture : map.expressions) inputs.addFile(texture, what);
+  }
+  return inputs;
 }
 
 }  // namespace facezip

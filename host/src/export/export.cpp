@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -108,6 +109,32 @@ exporting::GltfMaterial plainMaterial(const Package& package, Textures textures)
   return material;
 }
 
+/// A name that shells and languages take as it stands.
+bool isPlain(const std::string& name) {
+  const auto letter = [](char c) { return c == '_' || ('a' <= c && c <= 'z') || ('A' <= c && c <= 'Z'); };
+  const auto digit = [](char c) { return '0' <= c && c <= '9'; };
+  return letter(name.front()) && std::ranges::all_of(name, [&](char c) { return letter(c) || digit(c); });
+}
+
+/// A README whose examples have names of the package, so that they run as they stand.
+std::string withNames(std::string text, const Package& package) {
+  std::vector<std::pair<std::string, std::string>> names;
+  for (const std::string& name : package.expressions()) {
+    if (isPlain(name)) names.emplace_back(fmt::format("@EXPRESSION_{}@", names.size() + 1), name);
+    if (names.size() == 2) break;
+  }
+  const auto map = std::ranges::find_if(
+      package.maps(), [](const PackageMap& m) { return isPlain(m.name) && m.sample_type != SampleType::kFloat32; });
+  if (map != package.maps().end()) names.emplace_back("@MAP@", map->name);
+  for (const char* left : {"@EXPRESSION_1@", "@EXPRESSION_2@", "@MAP@"}) names.emplace_back(left, "NAME");
+  for (const auto& [placeholder, name] : names) {
+    for (std::size_t at = text.find(placeholder); at != std::string::npos; at = text.find(placeholder)) {
+      text.replace(at, placeholder.size(), name);
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 std::vector<std::string> exportTargets() {
@@ -127,7 +154,8 @@ std::vector<std::string> exportPackage(const Package& package, const std::string
     throw InputError({package.directory().string(), "mesh", "a package with meshes", "none",
                       "compress the capture again, without --no-mesh"});
   }
-  io::StagedDirectory staged(output, {"scene.gltf", "\"generator\": \"facezip "});
+  inputsOf(package).requireApartFromFolder(output);
+  io::StagedDirectory staged(output, {"scene.gltf", "\"generator\": \"facezip "}, &progress);
   const Target& chosen = found->second;
   if (chosen.write != nullptr) {
     chosen.write(package, staged.path(), progress);
@@ -137,8 +165,9 @@ std::vector<std::string> exportPackage(const Package& package, const std::string
   exporting::addBlendToGltf(mesh::readPackageMesh(package, memory_bytes), staged.path() / "scene.gltf",
                             plainMaterial(package, chosen.textures));
   for (const std::string& file : chosen.files) {
-    const std::string name = file.ends_with(".md") ? "README.md" : file;
-    io::writeTextFile(staged.path() / name, std::string(exporting::embeddedExportFiles().at(file)));
+    const std::string text(exporting::embeddedExportFiles().at(file));
+    const bool readme = file.ends_with(".md");
+    io::writeTextFile(staged.path() / (readme ? "README.md" : file), readme ? withNames(text, package) : text);
   }
   staged.commit();
   std::vector<std::string> notes = chosen.write != nullptr ? exporting::lossesOf(package) : std::vector<std::string>();

@@ -14,7 +14,7 @@ enum class MapRole { kAlbedo, kNormal, kRoughness, kOcclusion, kOther };
 /// "albedo", "normal", ...; "" for kOther.
 std::string roleName(MapRole role);
 
-/// The role that a name asks for, by the table of host/export/map_roles.json, in its order. Names are taken apart at
+/// The role that a name asks for, by the table of host/data/map_roles.json, in its order. Names are taken apart at
 /// capitals, digits and signs (`BaseColor`, `base_color`): a word of the table is one or several parts of the name in
 /// a row, or stands anywhere in it where it has six letters or more. A role is not given where the name holds one of
 /// the words that speak against it: a normal map for DirectX has its y down, a specular albedo is no albedo.

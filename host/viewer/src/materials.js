@@ -1,6 +1,6 @@
 // Materials of the head: shaded with every map that has a place in a physical material, and views for a look inside.
 import * as THREE from 'three';
-import table from '../../export/map_roles.json';
+import table from '../../data/map_roles.json';
 import { blendHeader } from './blend.js';
 
 // Tangent frame from derivatives, since captures carry no tangents; v of textures runs down, +y of normal maps up.

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <optional>
 #include <set>
-#include <string_view>
 
 #include "export/texture_copy.hpp"
 #include "package/package_files.hpp"
@@ -38,20 +37,6 @@ std::string identifier(const std::string& name, const std::set<std::string>& tak
   std::string unique = id;
   for (int i = 2; taken.contains(lowerCase(unique)); ++i) unique = fmt::format("{}_{}", id, i);
   return unique;
-}
-
-MapRole roleOf(const std::string& name, const std::vector<EngineMap>& before) {
-  static constexpr std::pair<std::string_view, MapRole> kParts[] = {{"albedo", MapRole::kAlbedo},
-                                                                    {"diffuse", MapRole::kAlbedo},
-                                                                    {"normal", MapRole::kNormal},
-                                                                    {"roughness", MapRole::kRoughness}};
-  const std::string lower = lowerCase(name);
-  for (const auto& [part, role] : kParts) {
-    if (lower.find(part) == std::string::npos) continue;
-    const bool taken = std::ranges::any_of(before, [&](const EngineMap& map) { return map.role == role; });
-    return taken ? MapRole::kOther : role;
-  }
-  return MapRole::kOther;
 }
 
 /// Codes of 16 bits are exported as the nearest of 8, zero as the nearest too: nothing then stays nothing.
@@ -89,9 +74,11 @@ std::optional<BlockFormat> blocksOf(const PackageMap& map) {
 std::vector<EngineMap> engineMaps(const Package& package) {
   std::vector<EngineMap> maps;
   std::set<std::string> taken;
-  for (const PackageMap& map : package.maps()) {
+  const std::vector<MapRole> roles = rolesOf(package.maps());
+  for (std::size_t m = 0; m < roles.size(); ++m) {
+    const PackageMap& map = package.maps()[m];
     if (map.sample_type == SampleType::kFloat32) continue;
-    EngineMap engine{identifier(map.name, taken), map, roleOf(map.name, maps), {}};
+    EngineMap engine{identifier(map.name, taken), map, roles[m], {}};
     taken.insert(lowerCase(engine.id));
     for (const PackageDifference& difference : map.differences) {
       engine.differences.push_back(engineDifference(map, difference));

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "grid_sizes.hpp"
+#include "reference/difference_settle.hpp"
 #include "tolerances.hpp"
 
 namespace facezip::test {
@@ -23,7 +24,7 @@ TEST_P(DifferenceSettle, DecodesAndMeasuresWhatIsLeft) {
         ASSERT_LE((problem.textureOf(textures, tile, t) - d).cwiseAbs().maxCoeff(), 1e-5 * problem.fullScale());
         if (problem.texelWeight(tile, t) == 0.0) continue;
         const Eigen::MatrixXd w = problem.weightsOf(tile, t);
-        const double error = (problem.deltaOf(tile, t) - w.transpose() * d).squaredNorm();
+        const double error = reference::settledError(w, problem.deltaOf(tile, t), d);
         expected[0] += error * problem.texelWeight(tile, t);
         expected[1] += error;
         energy += problem.deltaOf(tile, t).squaredNorm() + (w.transpose() * d).squaredNorm();

@@ -7,6 +7,13 @@ set(STEP_OF_gram_gpu gram)                    # the form for GPUs
 set(STEP_OF_gram_reduce gram)                 # its second launch
 set(STEP_OF_weight_system_gpu weight_system)  # the form for GPUs
 
+# Kernels of block formats share one encoder and one decoder, tests, references and benchmarks, which are named after
+# those: host file, test, reference, file of benchmarks.
+set(BLOCKS_OF_bc1_encode blocks/bc_encoder block_encode block_search block)
+set(BLOCKS_OF_bc4_encode ${BLOCKS_OF_bc1_encode})
+set(BLOCKS_OF_bc7_encode ${BLOCKS_OF_bc1_encode})
+set(BLOCKS_OF_block_decode blocks/device_block_decoder block_decode block_formats block)
+
 set(missing "")
 macro(require what)
   if(NOT found)
@@ -24,6 +31,17 @@ foreach(file IN LISTS kernels)
 
   file(STRINGS ${file} found REGEX "(^| )${kernel}\\(")
   require("kernel of that name in ${kernel}.cl")
+  if(DEFINED BLOCKS_OF_${kernel})
+    list(GET BLOCKS_OF_${kernel} 0 host)
+    list(GET BLOCKS_OF_${kernel} 1 test)
+    list(GET BLOCKS_OF_${kernel} 2 reference)
+    list(GET BLOCKS_OF_${kernel} 3 bench)
+    foreach(path host/src/${host}.cpp tests/kernels/${test}_test.cpp tests/reference/${reference}.hpp bench/${bench}_bench.cpp)
+      file(GLOB found ${SOURCE_DIR}/${path})
+      require(${path})
+    endforeach()
+    continue()
+  endif()
   file(GLOB_RECURSE found ${SOURCE_DIR}/host/src/*/${step}.cpp)
   require("host/src/*/${step}.cpp")
   file(GLOB found ${SOURCE_DIR}/tests/kernels/${step}_test.cpp)

@@ -3,7 +3,7 @@
 
 #include "compress/refine/difference_target.hpp"
 #include "problems/difference_fit.hpp"
-#include "reference/coded_textures.hpp"
+#include "reference/difference_target.hpp"
 
 namespace facezip::test {
 

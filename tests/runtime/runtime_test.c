@@ -56,7 +56,8 @@ static void check_description(const facezip_package* package) {
   CHECK(facezip_expression_name(package, 2) == NULL);
   CHECK(facezip_expression_name(package, -1) == NULL);
   CHECK(facezip_find_expression(package, "jawOpen") == 1);
-  CHECK(facezip_find_expression(package, "jawopen") == -1);
+  CHECK(facezip_find_expression(package, "JawOpen") == 1); /* another spelling of it */
+  CHECK(facezip_find_expression(package, "jaw") == -1);
   CHECK(facezip_map_count(package) == 2);
   CHECK(facezip_find_map(package, "gloss") == 1);
   CHECK(facezip_find_map(package, "normal") == -1);

@@ -70,7 +70,4 @@ class BlockEncoder {
 /// of so many channels cannot be stored in the format.
 std::unique_ptr<BlockEncoder> makeBlockEncoder(device::DeviceContext& context, const EncoderOptions& options);
 
-/// Throws InputError as makeBlockEncoder() does.
-void requireChannels(BlockFormat format, int channels);
-
 }  // namespace facezip::blocks

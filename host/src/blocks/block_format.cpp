@@ -58,6 +58,13 @@ std::size_t blockBytes(BlockFormat format, int width, int height) {
          static_cast<std::size_t>(blockCount(height, info.block_height)) * static_cast<std::size_t>(info.block_bytes);
 }
 
+void requireChannels(BlockFormat format, int channels) {
+  const BlockFormatInfo& info = infoOf(format);
+  if (channels >= 1 && channels <= info.max_channels) return;
+  throw InputError({std::string(info.name), "", fmt::format("textures of at most {} channels", info.max_channels),
+                    fmt::format("{}", channels), "choose another format: bc7 and the astc formats store up to 4"});
+}
+
 }  // namespace facezip::blocks
 
 namespace facezip {

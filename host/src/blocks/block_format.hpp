@@ -42,4 +42,7 @@ bool isAstc(BlockFormat format);
 int blockCount(int texels, int block_side);
 std::size_t blockBytes(BlockFormat format, int width, int height);
 
+/// Throws InputError when a texture of so many channels cannot be stored in the format.
+void requireChannels(BlockFormat format, int channels);
+
 }  // namespace facezip::blocks

@@ -1,5 +1,5 @@
-// Reference for kernels/cl/difference_target.cl and difference_settle.cl: textures that are coded one after the other,
-// at one texel, in double and without factors.
+// Reference for kernels/cl/difference_target.cl: textures that are coded one after the other, at one texel, in double and
+// without factors.
 #pragma once
 
 #include <Eigen/Dense>

@@ -216,9 +216,17 @@ TEST(Capture, FoldersOfPreviewsAndReferencesAreNoMaps) {
   fs::rename(c / "reference/left.png", c / "reference/e00.png");
   EXPECT_THAT(failure(c), testing::AllOf(HasSubstr("reference/neutral.png: map \"reference\""),
                                          HasSubstr("leave reference/ out with --maps albedo, or list")));
+  // So is the one that is in the way: fewer maps have what it has.
+  fs::copy(c / "albedo", c / "normal");
+  fs::copy(c / "albedo", c / "specular");
+  fs::copy_file(c / "albedo/e00.png", c / "normal/grin.png");
+  fs::rename(c / "reference", folder / "reference");
+  EXPECT_THAT(failure(c), testing::AllOf(HasSubstr("albedo/grin.png: map \"albedo\""),
+                                         HasSubstr("leave normal/ out with --maps albedo,specular, or")));
+  fs::remove_all(c / "normal");
+  fs::remove_all(c / "specular");
   // Where nothing else is a map, the images beside the meshes are.
   fs::rename(c / "albedo", folder / "albedo");
-  fs::rename(c / "reference", folder / "reference");
   EXPECT_EQ(openCapture(c).maps.at(0).name, "expressions");
 }
 

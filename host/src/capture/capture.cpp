@@ -147,12 +147,11 @@ Capture openCapture(const fs::path& directory, const std::vector<std::string>& m
   for (const std::string& name : chosen) {
     used[name] = found.at(name);
     requireName(name, "map", used[name].source);
-    requireTextures(name, used[name]);
   }
+  requireTextures(used);
   capture.expressions = expressionNames(directory, description, used);
   for (const std::string& name : chosen) requireKnownExpressions(name, description, capture.expressions, directory);
-  for (const std::string& name : chosen)
-    capture.maps.push_back(makeMap(name, used.at(name), capture.expressions, chosen));
+  for (const std::string& name : chosen) capture.maps.push_back(makeMap(name, used, capture.expressions));
   for (const auto& [name, file] : description.expression_meshes) {
     if (std::ranges::find(capture.expressions, name) != capture.expressions.end()) continue;
     throw InputError({(directory / kCaptureFile).string(), "expression_meshes", "expressions of the capture",

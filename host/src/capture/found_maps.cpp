@@ -125,15 +125,38 @@ Maps mapsByFolder(const fs::path& directory, const std::vector<std::string>& wan
   return found;
 }
 
-/// What to do about a texture that is missing.
-std::string cureFor(const std::string& map_name, const FoundMap& map, const std::vector<std::string>& maps) {
-  std::vector<std::string> others = maps;
-  std::erase(others, map_name);
+/// What to do about a texture that a map lacks. Where fewer maps have one than not, those are in the way, else this
+/// one.
+std::string cureFor(const std::string& name, const std::string& expression, const Maps& maps) {
+  std::vector<std::string> have, lack, others;
+  for (const auto& [map_name, map] : maps) {
+    (map.images.contains(expression) ? have : lack).push_back(map_name);
+    if (map_name != name) others.push_back(map_name);
+  }
+  const bool others_are = !have.empty() && have.size() < lack.size();
+  const std::vector<std::string> left_out = others_are ? have : std::vector{name};
+  const std::vector<std::string>& taken = others_are ? lack : others;
   std::string cure = "add it";
-  if (!others.empty()) {
-    cure += fmt::format(", leave {}/ out with --maps {}", map.folder.filename().string(), fmt::join(others, ","));
+  if (!taken.empty()) {
+    cure += fmt::format(", leave {}/ out with --maps {}", fmt::join(left_out, "/ and "), fmt::join(taken, ","));
   }
   return cure + ", or list expressions and maps in capture.json";
+}
+
+std::string whatIs(const std::string& expression) {
+  return expression == kNeutral ? "the texture of the neutral"
+                                : fmt::format("the texture of expression \"{}\"", expression);
+}
+
+fs::path textureOf(const std::string& name, const std::string& expression, const Maps& maps) {
+  const FoundMap& map = maps.at(name);
+  const auto image = map.images.find(expression);
+  const bool is_found = image != map.images.end();
+  const fs::path file = is_found ? image->second : map.folder / (expression + ".png");
+  const std::string fault = is_found ? faultOfFile(file) : "no such file";
+  if (fault.empty()) return file;
+  throw InputError(
+      {file.string(), fmt::format("map \"{}\"", name), whatIs(expression), fault, cureFor(name, expression, maps)});
 }
 
 }  // namespace
@@ -146,37 +169,30 @@ std::map<std::string, FoundMap> findMaps(const fs::path& directory, const Captur
                                   : describedMaps(directory, description, neutral);
 }
 
-void requireTextures(const std::string& name, const FoundMap& map) {
-  std::error_code error;
-  if (map.images.empty()) {
-    throw InputError({map.folder.string(), fmt::format("map \"{}\"", name), "a folder of textures",
-                      fs::exists(map.folder, error) ? "no image in it" : "no such folder",
-                      "add the textures, or take the map out of capture.json"});
+void requireTextures(const Maps& maps) {
+  for (const auto& [name, map] : maps) {
+    std::error_code error;
+    if (map.images.empty()) {
+      throw InputError({map.folder.string(), fmt::format("map \"{}\"", name), "a folder of textures",
+                        fs::exists(map.folder, error) ? "no image in it" : "no such folder",
+                        "add the textures, or take the map out of capture.json"});
+    }
+    if (!map.repeated.empty()) {
+      const auto& [expression, files] = *map.repeated.begin();
+      throw InputError({map.folder.string(), fmt::format("expression \"{}\"", expression), "one texture", files,
+                        "remove or rename one"});
+    }
+    textureOf(name, kNeutral, maps);  // before expressions that this map alone may have
   }
-  if (map.repeated.empty()) return;
-  const auto& [expression, files] = *map.repeated.begin();
-  throw InputError({map.folder.string(), fmt::format("expression \"{}\"", expression), "one texture", files,
-                    "remove or rename one"});
 }
 
-CaptureMap makeMap(const std::string& name, const FoundMap& found, const std::vector<std::string>& expressions,
-                   const std::vector<std::string>& maps) {
-  const auto textureOf = [&](const std::string& expression, const std::string& what) {
-    const auto image = found.images.find(expression);
-    const bool is_found = image != found.images.end();
-    const fs::path file = is_found ? image->second : found.folder / (expression + ".png");
-    const std::string fault = is_found ? faultOfFile(file) : "no such file";
-    if (fault.empty()) return file;
-    throw InputError({file.string(), fmt::format("map \"{}\"", name), what, fault, cureFor(name, found, maps)});
-  };
+CaptureMap makeMap(const std::string& name, const Maps& maps, const std::vector<std::string>& expressions) {
   CaptureMap map;
   map.name = name;
-  map.colour_space = found.description.colour_space;
-  map.metric_weight = found.description.weight;
-  map.neutral = textureOf(kNeutral, "the texture of the neutral");
-  for (const std::string& expression : expressions) {
-    map.expressions.push_back(textureOf(expression, fmt::format("the texture of expression \"{}\"", expression)));
-  }
+  map.colour_space = maps.at(name).description.colour_space;
+  map.metric_weight = maps.at(name).description.weight;
+  map.neutral = textureOf(name, kNeutral, maps);
+  for (const std::string& expression : expressions) map.expressions.push_back(textureOf(name, expression, maps));
   return map;
 }
 

@@ -31,12 +31,12 @@ struct FoundMap {
 std::map<std::string, FoundMap> findMaps(const std::filesystem::path& directory, const CaptureJson& description,
                                          const std::vector<std::string>& wanted, Progress* progress);
 
-/// Throws InputError for a map that has no textures, or several of one name.
-void requireTextures(const std::string& name, const FoundMap& map);
+/// Throws InputError for one of the maps that has no textures, no neutral or several textures of one name.
+void requireTextures(const std::map<std::string, FoundMap>& maps);
 
-/// The files of a map. expressions  N, as the capture orders them. maps  names of the capture's maps, for messages
+/// The files of map `name` of `maps`. expressions  N, as the capture orders them
 /// Throws InputError for a texture that is not there, or is no file, naming what leaves it out.
-CaptureMap makeMap(const std::string& name, const FoundMap& found, const std::vector<std::string>& expressions,
-                   const std::vector<std::string>& maps);
+CaptureMap makeMap(const std::string& name, const std::map<std::string, FoundMap>& maps,
+                   const std::vector<std::string>& expressions);
 
 }  // namespace facezip

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include "export/texture_copy.hpp"
@@ -51,12 +52,21 @@ EngineDifference engineDifference(const PackageMap& map, const PackageDifference
   return engine;
 }
 
-std::vector<PackageImage> differencesOf(const EngineMap& map) {
-  std::vector<PackageImage> images;
-  for (const PackageDifference& difference : map.map.differences) {
-    images.push_back({difference.file, package::differenceShape(map.map)});
+std::vector<package::StoredTexture> differencesOf(const EngineMap& map) {
+  std::vector<package::StoredTexture> textures;
+  for (int i = 0; i < static_cast<int>(map.map.differences.size()); ++i) {
+    textures.push_back(package::differenceTexture(map.map, i));
   }
-  return images;
+  return textures;
+}
+
+/// A texture in blocks of the map; none where all are images.
+std::optional<BlockFormat> blocksOf(const PackageMap& map) {
+  if (map.neutral_format) return map.neutral_format;
+  for (const PackageDifference& difference : map.differences) {
+    if (difference.format) return difference.format;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -86,6 +96,10 @@ std::vector<std::string> lossesOf(const Package& package) {
           fmt::format("{}: left out, its samples are floats and textures of engines have 8 bits", map.name));
     } else if (map.sample_type == SampleType::kUint16) {
       losses.push_back(fmt::format("{}: rounded from 16 bits to 8", map.name));
+    } else if (const std::optional<BlockFormat> format = blocksOf(map)) {
+      losses.push_back(
+          fmt::format("{}: its {} blocks are decoded to PNG; import it uncompressed, or the engine codes it again",
+                      map.name, blockFormatName(*format)));
     }
   }
   return losses;
@@ -98,14 +112,13 @@ void requireMaps(const Package& package, const std::vector<EngineMap>& maps) {
 }
 
 void writeNeutral(const Package& package, const EngineMap& map, const fs::path& folder, Progress& progress) {
-  copyTexture(package, {map.map.neutral_file, package::neutralShape(map.map)}, folder / (map.id + "_neutral.png"),
-              progress);
+  copyTexture(package, package::neutralTexture(map.map), folder / (map.id + "_neutral.png"), progress);
 }
 
 void writeDifferences(const Package& package, const EngineMap& map, const fs::path& folder, Progress& progress) {
-  const std::vector<PackageImage> images = differencesOf(map);
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    copyTexture(package, images[i], folder / fmt::format("{}_difference_{}.png", map.id, i), progress);
+  const std::vector<package::StoredTexture> textures = differencesOf(map);
+  for (std::size_t i = 0; i < textures.size(); ++i) {
+    copyTexture(package, textures[i], folder / fmt::format("{}_difference_{}.png", map.id, i), progress);
   }
 }
 
@@ -141,7 +154,8 @@ void writeWeights(const Package& package, const std::vector<EngineMap>& maps, co
     const PackageWeights& weights = package.weightSets()[static_cast<std::size_t>(set)];
     for (std::size_t f = 0; f < weights.files.size(); ++f) {
       const image::ImageShape shape = package::atlasShape(weights, package.differences(), static_cast<int>(f));
-      copyTexture(package, {weights.files[f], shape}, folder / fmt::format("weights_{}_{}.png", set, f), progress);
+      copyTexture(package, {weights.files[f], std::nullopt, shape}, folder / fmt::format("weights_{}_{}.png", set, f),
+                  progress);
     }
   }
 }

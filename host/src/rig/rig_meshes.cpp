@@ -61,7 +61,9 @@ geometry::TriangleMesh wholeNeutral(const geometry::TriangleMesh& skin, const ge
 std::string neutralOf(const std::vector<PackageMap>& maps, exporting::MapRole role) {
   const std::vector<exporting::MapRole> roles = exporting::rolesOf(maps);
   const auto found = std::ranges::find(roles, role);
-  return found == roles.end() ? "" : maps[static_cast<std::size_t>(found - roles.begin())].neutral_file;
+  if (found == roles.end()) return "";
+  const std::string& file = maps[static_cast<std::size_t>(found - roles.begin())].neutral_file;
+  return file.ends_with(".png") ? file : "";  // glTF takes no other
 }
 
 }  // namespace

@@ -14,7 +14,8 @@ Eigen::RowVector3d floatOrigin(const Eigen::MatrixX3d& positions) {
 std::string originNote(const Eigen::RowVector3d& origin, const std::string& files) {
   return fmt::format(
       "the mesh lies far from the origin for its size, and floats would round it off: {} {} it moved by ({}, {}, {})",
-      files, files.find(" and ") == std::string::npos ? "holds" : "hold", -origin[0], -origin[1], -origin[2]);
+      files, files.find(" and ") == std::string::npos ? "holds" : "hold", 0.0 - origin[0], 0.0 - origin[1],
+      0.0 - origin[2]);
 }
 
 }  // namespace facezip::geometry

@@ -172,6 +172,8 @@ ClosestSurface::ClosestSurface(const Eigen::MatrixX3d& positions, const Eigen::M
 }
 
 ClosestSurface::~ClosestSurface() = default;
+ClosestSurface::ClosestSurface(ClosestSurface&&) noexcept = default;
+ClosestSurface& ClosestSurface::operator=(ClosestSurface&&) noexcept = default;
 
 SurfacePoint ClosestSurface::closest(const Eigen::Vector3d& point, double reach) const {
   return closestFacing(point, Eigen::Vector3d::UnitX(), -2.0, reach);

@@ -28,6 +28,7 @@ class ClosestSurface {
   ClosestSurface(const Eigen::MatrixX3d& positions, const Eigen::MatrixX3i& triangles, std::vector<bool> used = {});
   ~ClosestSurface();
   ClosestSurface(ClosestSurface&&) noexcept;
+  ClosestSurface& operator=(ClosestSurface&&) noexcept;
 
   /// The closest point within `reach`.
   SurfacePoint closest(const Eigen::Vector3d& point, double reach = std::numeric_limits<double>::infinity()) const;

@@ -12,7 +12,7 @@
 #include "facezip/geometry/obj_io.hpp"
 #include "image/image_file.hpp"
 #include "io/read_file.hpp"
-#include "io/staged_directory.hpp"
+#include "io/write_file.hpp"
 #include "raster/uv_raster.hpp"
 #include "small_capture.hpp"
 #include "synth/actions.hpp"

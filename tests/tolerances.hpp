@@ -58,6 +58,10 @@ inline constexpr double kFoldedCodeBias = 1.0 / 512.0;
 // Texels of BC4 blocks, in code units: float32 between two codes, half a unit of 2^-16 twice or so.
 inline constexpr double kBetweenEnds = 5e-5;
 
+// Texels of mip levels, in code units: two sums of three products and a division a level, each half a unit of 2^-16,
+// over six levels.
+inline constexpr double kMipTexel = 2e-4;
+
 // --- search on Gram matrices -----------------------------------------------------------------------------------------
 
 /// Seam costs, as a share of the largest squared length of a centred fragment of the pair. e^T H e has entries of H

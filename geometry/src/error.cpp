@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "facezip/printable.hpp"
+
 namespace facezip {
 namespace {
 
@@ -18,13 +20,13 @@ std::string describe(const InputError::Parts& parts) {
   append(": ", parts.expected.empty() ? "" : "expected " + parts.expected);
   append(parts.expected.empty() ? ": " : ", ", parts.got.empty() ? "" : "got " + parts.got);
   append("; ", parts.cure);
-  return text;
+  return printable(text);
 }
 
 std::string describe(const std::filesystem::path& file, const std::string& reason, const std::string& cure) {
   std::string text = file.string() + ": cannot write: " + reason;
   if (!cure.empty()) text += "; " + cure;
-  return text;
+  return printable(text);
 }
 
 }  // namespace
@@ -38,7 +40,7 @@ InputError InputError::in(const std::string& file) const {
 }
 
 OutputError::OutputError(const std::filesystem::path& file, const std::string& reason, const std::string& cure)
-    : Error(describe(file, reason, cure)), file_(file) {}
+    : Error(describe(file, reason, cure)), file_(file), reason_(reason), cure_(cure) {}
 
 SolverError::SolverError(const std::string& step, long size, double residual)
     : Error(step + ": the linear system with " + std::to_string(size) + " unknowns was not solved (relative residual " +

@@ -4,15 +4,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <charconv>
-#include <fstream>
+#include <cstdint>
 #include <numeric>
+#include <sstream>
 #include <string>
 #include <string_view>
-#include <system_error>
 
 #include "facezip/error.hpp"
+#include "facezip/input_file.hpp"
 
 namespace facezip::geometry {
 namespace {
@@ -162,11 +162,8 @@ void findComponents(RegionMesh& region) {
 }  // namespace
 
 std::vector<int> readTriangleIndices(const std::filesystem::path& file, int triangle_count) {
-  std::ifstream stream(file);
-  if (!stream || std::filesystem::is_directory(file)) {
-    throw InputError({file.string(), "", "a list of triangle indices",
-                      stream ? "a folder" : std::system_category().message(errno), "check the path"});
-  }
+  constexpr std::uintmax_t kMostBytes = std::uintmax_t{256} << 20;
+  std::istringstream stream(InputFile(file, "a list of triangle indices", "check the path").read(kMostBytes));
   std::vector<int> indices;
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {

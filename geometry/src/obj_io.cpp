@@ -1,21 +1,23 @@
 // obj_io.cpp - Wavefront OBJ through tinyobjloader, in double precision.
-// tinyobjloader reads leniently: "v nan 1 2" is 0 1 2, a missing number is 0, a missing corner drops the face. A scan
-// of the lines comes first, which refuses those and remembers the lines, so that every message can name one.
+// tinyobjloader reads leniently: "v nan 1 2" is 0 1 2, a missing number is 0, a missing corner drops the face, index
+// 4294967297 is 1. A scan of the lines comes first, which refuses those and remembers the lines, so that every message
+// can name one.
 #include "facezip/geometry/obj_io.hpp"
 
 #include <fmt/format.h>
 #include <tiny_obj_loader.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <limits>
 #include <map>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -23,6 +25,7 @@
 
 #include "facezip/error.hpp"
 #include "facezip/geometry/textured_obj.hpp"
+#include "facezip/input_file.hpp"
 
 namespace facezip::geometry {
 namespace {
@@ -49,6 +52,10 @@ void requireUnique(const std::filesystem::path& folder, const std::vector<std::f
 bool isBlank(char c) { return c == ' ' || c == '\t'; }
 bool endsLine(char c) { return c == '\n' || c == '\r'; }
 
+// Of a file: some 30 million vertices. Parsed, it takes several times as much memory.
+constexpr std::uintmax_t kMostBytes = std::uintmax_t{2} << 30;
+// Of a material library: far beyond what people write.
+constexpr std::uintmax_t kMostLibraryBytes = std::uintmax_t{16} << 20;
 // tinyobjloader counts the corners of a face in a byte.
 constexpr int kMostCorners = 255;
 
@@ -65,30 +72,28 @@ struct ObjLines {
   throw InputError({file.string(), "line " + std::to_string(line), expected, got, cure});
 }
 
-std::string readText(const std::filesystem::path& file) {
-  std::error_code error;
-  if (std::filesystem::is_directory(file, error)) throw InputError({file.string(), "", "an OBJ file", "a folder", ""});
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) {
-    throw InputError({file.string(), "", "an OBJ file", std::system_category().message(errno), "check the path"});
-  }
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (stream.bad()) throw InputError({file.string(), "", "an OBJ file", "a file that cannot be read to its end", ""});
-  return std::move(text).str();
+// Does the line hold numbers, so that no name in it can have a '#'?
+bool isOfNumbers(std::string_view line) {
+  line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+  return line.starts_with('v') || line.starts_with("f ") || line.starts_with("f\t");
 }
 
-// Drops a byte order mark and joins each line that ends in a backslash with the next, but for comments, which may end
-// in a path. As many empty lines follow what was joined: line numbers stay those of the file.
+// Drops a byte order mark and comments behind numbers, and joins each line that ends in a backslash with the next, but
+// for comments, which may end in a path. As many empty lines follow what was joined: line numbers stay those of the
+// file.
 std::string plainLines(std::string_view text) {
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   std::string plain;
   plain.reserve(text.size());
   std::size_t joined = 0;
-  for (bool comment = false; !text.empty();) {
+  for (bool comment = false, numbers = false; !text.empty();) {
     const std::size_t length = std::min(text.find_first_of("\r\n"), text.size());
-    const std::string_view line = text.substr(0, length);
-    if (joined == 0) comment = line.starts_with('#');
+    std::string_view line = text.substr(0, length);
+    if (joined == 0) {
+      comment = line.starts_with('#');
+      numbers = isOfNumbers(line);
+    }
+    if (numbers) line = line.substr(0, line.find('#'));
     text.remove_prefix(length);
     text.remove_prefix(text.starts_with("\r\n") ? 2 : std::min<std::size_t>(text.size(), 1));
     if (line.ends_with('\\') && !comment) {
@@ -119,19 +124,44 @@ bool isNumber(std::string_view word) {
   return end == word.data() + word.size() && error != std::errc::invalid_argument && !spelled_out;
 }
 
+// `count` numbers and what may follow them: weights, colours.
 void checkNumbers(const std::filesystem::path& file, int line_number, std::string_view rest, int count) {
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0;; ++i) {
     const std::string_view word = nextWord(rest);
+    if (word.empty() && i >= count) return;
     if (isNumber(word)) continue;
     refuse(file, line_number, fmt::format("{} finite numbers", count),
            word.empty() ? fmt::format("{}", i) : fmt::format("\"{}\"", word), "export the mesh again");
   }
 }
 
-// Does the corner "v", "v/vt", "v//vn" or "v/vt/vn" have a texture coordinate?
-bool cornerHasUv(std::string_view corner) {
-  const std::size_t slash = corner.find('/');
-  return slash != std::string_view::npos && slash + 1 < corner.size() && corner[slash + 1] != '/';
+// A whole number that an int holds, from 1 or, counted back from the last of `count`, from -1.
+bool isIndex(std::string_view word, std::size_t count) {
+  int index = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), index);
+  if (error != std::errc() || end != word.data() + word.size()) return false;
+  return index > 0 || (index < 0 && static_cast<std::size_t>(-static_cast<long long>(index)) <= count);
+}
+
+// Checks the corner "v", "v/vt", "v//vn" or "v/vt/vn"; whether it has a texture coordinate. Normals are not read, and
+// may be counted as they like.
+bool scanCorner(const std::filesystem::path& file, int line_number, std::string_view corner, const ObjLines& lines) {
+  constexpr std::size_t kAny = std::numeric_limits<int>::max();
+  const std::size_t counts[] = {lines.vertices.size(), lines.uvs.size(), kAny};
+  std::array<bool, 3> given = {};
+  std::string_view rest = corner;
+  for (std::size_t part = 0;; ++part) {
+    const std::size_t slash = rest.find('/');
+    const std::string_view index = rest.substr(0, slash);
+    const bool good = part < given.size() && (index.empty() ? part > 0 : isIndex(index, counts[part]));
+    if (!good) {
+      refuse(file, line_number, "corners of whole indices such as 7, 7/8 or 7/8/9", fmt::format("\"{}\"", corner),
+             "export the mesh again");
+    }
+    given[part] = !index.empty();
+    if (slash == std::string_view::npos) return given[1];
+    rest.remove_prefix(slash + 1);
+  }
 }
 
 void scanFace(const std::filesystem::path& file, int line_number, std::string_view rest, ObjLines& lines) {
@@ -139,7 +169,7 @@ void scanFace(const std::filesystem::path& file, int line_number, std::string_vi
   int corners_with_uvs = 0;
   for (std::string_view word = nextWord(rest); !word.empty(); word = nextWord(rest)) {
     ++corners;
-    corners_with_uvs += cornerHasUv(word) ? 1 : 0;
+    corners_with_uvs += scanCorner(file, line_number, word, lines) ? 1 : 0;
   }
   if (corners < 3) refuse(file, line_number, "a face of at least 3 corners", std::to_string(corners));
   if (corners > kMostCorners) {
@@ -235,12 +265,14 @@ class FanBuilder {
       for (std::size_t i = 1; i + 1 < corners; ++i) {
         for (const std::size_t j : {std::size_t{0}, i, i + 1}) addCorner(mesh.indices[corner + j], line);
         materials_.push_back(mesh.material_ids[face]);
+        polygons_.push_back(static_cast<int>(face_) - 1);
       }
       corner += corners;
     }
   }
 
   void store(TriangleMesh& mesh) const {
+    mesh.polygons = polygons_;
     using RowMajor = Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>;
     const auto rows = static_cast<Eigen::Index>(vertices_.size() / 3);
     mesh.triangles = Eigen::Map<const RowMajor>(vertices_.data(), rows, 3);
@@ -265,6 +297,7 @@ class FanBuilder {
   std::vector<int> vertices_;
   std::vector<int> uvs_;
   std::vector<int> materials_;
+  std::vector<int> polygons_;
 };
 
 /// textures is left empty.
@@ -308,7 +341,8 @@ std::string readLibraries(const std::filesystem::path& file, std::string_view te
     line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
     while (!line.empty() && isBlank(line.back())) line.remove_suffix(1);
     const std::filesystem::path library = besideFile(file, std::string(line));
-    if (!library.empty()) libraries += plainLines(readText(library)) + "\n";
+    if (!library.empty())
+      libraries += plainLines(InputFile(library, "a material library").read(kMostLibraryBytes)) + "\n";
   }
   return libraries;
 }
@@ -332,13 +366,13 @@ std::string formatObj(const TriangleMesh& mesh) {
 }  // namespace
 
 TriangleMesh readObj(const std::filesystem::path& file) {
-  const std::string text = plainLines(readText(file));
+  const std::string text = plainLines(InputFile(file, "an OBJ file", "check the path").read(kMostBytes));
   const ObjLines lines = scanLines(file, text);
   return meshOf(file, lines, parse(file, text)).mesh;
 }
 
 TexturedMesh readTexturedObj(const std::filesystem::path& file) {
-  const std::string text = plainLines(readText(file));
+  const std::string text = plainLines(InputFile(file, "an OBJ file", "check the path").read(kMostBytes));
   const ObjLines lines = scanLines(file, text);
   const tinyobj::ObjReader reader = parse(file, text, readLibraries(file, text));
   TexturedMesh textured = meshOf(file, lines, reader);
@@ -357,8 +391,7 @@ std::vector<std::filesystem::path> objFiles(const std::filesystem::path& folder)
   std::vector<fs::path> files;
   for (fs::directory_iterator entry(folder, error); !error && entry != fs::directory_iterator();
        entry.increment(error)) {
-    std::error_code ignored;
-    if (entry->is_regular_file(ignored) && isObj(entry->path())) files.push_back(entry->path());
+    if (isObj(entry->path())) files.push_back(entry->path());
   }
   if (error) {
     throw InputError({folder.string(), "", "a folder that can be read", error.message(), "check its permissions"});

@@ -62,6 +62,10 @@ std::vector<int> partsOf(const TriangleMesh& scan) {
 void keepTriangles(TriangleMesh& scan, const std::vector<int>& kept) {
   scan.triangles = scan.triangles(kept, Eigen::all).eval();
   if (scan.uv_triangles.rows() > 0) scan.uv_triangles = scan.uv_triangles(kept, Eigen::all).eval();
+  if (scan.polygons.empty()) return;
+  std::vector<int> polygons;
+  for (const int triangle : kept) polygons.push_back(scan.polygons[static_cast<std::size_t>(triangle)]);
+  scan.polygons = std::move(polygons);
 }
 
 int crowdedEdges(const Eigen::MatrixX3i& triangles) {

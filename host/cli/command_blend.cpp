@@ -32,7 +32,10 @@ AnimationClip readFrames(const Arguments& arguments, const Package& package) {
 void blendFrames(const Arguments& arguments, const Package& package, std::uint64_t memory_bytes, Progress& progress) {
   const AnimationClip clip = readFrames(arguments, package);
   const FramePattern pattern(arguments.output, !arguments.animation.empty(), package.maps().size());
-  pattern.requireFits(package);
+  pattern.requireFits(package, clip.frames(),
+                      ProtectedPaths()
+                          .addFile(arguments.animation, "the clip that is read")
+                          .addFile(arguments.gain, "the gains that are read"));
   const Gain gain = arguments.gain.empty() ? unitGain(package) : readGain(arguments.gain, package);
   writeFrames(package, clip, gain, pattern, openDevice(arguments.device, &progress), progress, memory_bytes);
 }

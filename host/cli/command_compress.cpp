@@ -38,12 +38,13 @@ void addCompressCommand(CLI::App& app, const CommonOptions& common) {
   command->callback([arguments, &common] {
     const CompressOptions options = parseCompressOptions(arguments->compress);
     TerminalProgress progress(common.quiet);
-    requireReportPlace(arguments->report);
     const CancelOnSignal cancel(progress);
     const Capture capture = openCapture(arguments->capture, arguments->maps, &progress);
+    requireReportPlace(arguments->report,
+                       inputsOf(capture, options).add(arguments->output, "the package that is written"));
     const Device device = openDevice(arguments->device, &progress);
     const CompressReport report = compressCapture(capture, arguments->output, options, device, progress);
-    if (!arguments->report.empty()) writeReport(arguments->report, toJson(report));
+    if (!arguments->report.empty()) writeReport(arguments->report, toJson(report), &progress);
     printCompressReport(report);
   });
 }

@@ -28,24 +28,24 @@ void runDemo(const Arguments& arguments, Progress& progress) {
   const fs::path output = arguments.output;
   if (output.empty()) throw InputError({"--output", "", "a name", "an empty one", ""});
   const Device device = openDevice(arguments.device, &progress);
-  fmt::print("1. facezip synth --output {}\n", (output / "capture").string());
+  say("1. facezip synth --output {}\n", (output / "capture").string());
   synthesizeCapture(output / "capture", arguments.synth, progress);
   const Capture capture = openCapture(output / "capture");
 
-  fmt::print("2. facezip compress {} --output {}\n\n", (output / "capture").string(), (output / "package").string());
+  say("2. facezip compress {} --output {}\n\n", (output / "capture").string(), (output / "package").string());
   const CompressReport report = compressCapture(capture, output / "package", {}, device, progress);
   printCompressReport(report);
-  writeReport(output / "compress.json", toJson(report));
+  writeReport(output / "compress.json", toJson(report), &progress);
 
-  fmt::print("\n3. facezip evaluate {} {}\n", (output / "capture").string(), (output / "package").string());
+  say("\n3. facezip evaluate {} {}\n", (output / "capture").string(), (output / "package").string());
   const Package package = Package::open(output / "package");
   const Evaluation evaluation = evaluatePackage(capture, package, {}, device, progress);
   printEvaluation(evaluation);
-  writeReport(output / "evaluate.json", toJson(evaluation));
+  writeReport(output / "evaluate.json", toJson(evaluation), &progress);
 
   reconstruct(package, output / "reconstructed", {}, device, progress);
   writeContactSheet(output / "contact_sheet.png", capture, package, output / "reconstructed");
-  fmt::print("\nLook at {}\n", (output / "contact_sheet.png").string());
+  say("\nLook at {}\n", (output / "contact_sheet.png").string());
 }
 
 }  // namespace
@@ -58,6 +58,7 @@ void addDemoCommand(CLI::App& app, const CommonOptions& common) {
       ->type_name("DIR")
       ->capture_default_str();
   command->add_option("--resolution", arguments->synth.resolution, "Side of the textures in texels")
+      ->transform(wholeNumber())
       ->capture_default_str();
   addSeedOption(*command, arguments->synth.seed, "Seed of the face");
   addDeviceOption(*command, arguments->device);

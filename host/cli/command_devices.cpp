@@ -2,6 +2,7 @@
 
 #include "commands.hpp"
 #include "facezip/device.hpp"
+#include "terminal.hpp"
 
 namespace facezip::cli {
 namespace {
@@ -18,10 +19,10 @@ void printDevices() {
   }
   constexpr double kGiB = 1024.0 * 1024.0 * 1024.0;
   for (const DeviceInfo& info : devices) {
-    fmt::print("{}  {} ({}), {}\n", info.selector, info.name, typeName(info.type), info.platform);
-    fmt::print("     {} compute units, {:.1f} GiB memory, {:.1f} GiB in one buffer, {}, driver {}\n",
-               info.compute_units, static_cast<double>(info.global_memory_bytes) / kGiB,
-               static_cast<double>(info.largest_allocation_bytes) / kGiB, info.version, info.driver);
+    say("{}  {} ({}), {}\n", info.selector, info.name, typeName(info.type), info.platform);
+    say("     {} compute units, {:.1f} GiB memory, {:.1f} GiB in one buffer, {}, driver {}\n", info.compute_units,
+        static_cast<double>(info.global_memory_bytes) / kGiB, static_cast<double>(info.largest_allocation_bytes) / kGiB,
+        info.version, info.driver);
   }
 }
 

@@ -23,7 +23,7 @@ namespace {
 std::vector<std::string> baselineNames() {
   std::vector<std::string> names = allNames<Baseline>();
   for (const std::string& method : allNames<Method>()) names.push_back(method);
-  names.emplace_back("none");
+  names.insert(names.end(), {"bc1", "bc7", "astc-4x4", "astc-5x5", "astc-6x6", "astc-8x8", "astc-10x10", "none"});
   return names;
 }
 
@@ -35,6 +35,15 @@ std::set<Value> chosen(const std::vector<std::string>& names) {
     if (const std::optional<Value> value = findNamed<Value>(name)) values.insert(*value);
   }
   return values;
+}
+
+/// Those of the names that are block formats.
+std::set<BlockFormat> chosenFormats(const std::vector<std::string>& names) {
+  std::set<BlockFormat> formats;
+  for (const std::string& name : names) {
+    if (name.starts_with("bc") || name.starts_with("astc")) formats.insert(blockFormatOf(name, "--baselines"));
+  }
+  return formats;
 }
 
 /// Of the methods of the first pictures; the package is known by its method.
@@ -52,7 +61,7 @@ void addEvaluateCommand(CLI::App& app, const CommonOptions& common) {
   struct Arguments {
     std::string capture;
     std::string package;
-    std::vector<std::string> baselines = {"pca4", "pca8", "no-permutation", "paper", "limit"};
+    std::vector<std::string> baselines = {"bc7", "astc-6x6", "pca4", "pca8", "no-permutation", "paper", "limit"};
     bool ablation = false;
     bool shapes = false;
     int blends = EvaluateOptions().blends;
@@ -69,7 +78,7 @@ void addEvaluateCommand(CLI::App& app, const CommonOptions& common) {
   command->add_option("package", arguments->package, "Directory of the package")->required()->type_name("PACKAGE");
   command
       ->add_option("--baselines", arguments->baselines,
-                   "What to compare with: pca4, pca8, limit (best components of every block), no-permutation, paper, "
+                   "What to compare with: every texture in bc1, bc7, astc-4x4, -5x5, -6x6, -8x8 or -10x10; pca4, pca8, limit (best components of every block), no-permutation, paper, "
                    "closed-loop, refined, weights-per-map, compress-stretch (each compresses once more), or none")
       ->delimiter(',')
       ->check(CLI::IsMember(baselineNames()))
@@ -79,6 +88,7 @@ void addEvaluateCommand(CLI::App& app, const CommonOptions& common) {
   command->add_flag("--ablation", arguments->ablation,
                     "Also every method at C = 1, 2, 3, 4: compresses up to 16 times more");
   command->add_option("--blends", arguments->blends, "Random blends of one to five expressions to measure; 0: none")
+      ->transform(wholeNumber())
       ->check(CLI::Range(0, 10000))
       ->capture_default_str();
   command
@@ -99,18 +109,23 @@ void addEvaluateCommand(CLI::App& app, const CommonOptions& common) {
     EvaluateOptions options;
     options.methods = chosen<Method>(arguments->baselines);
     options.baselines = chosen<Baseline>(arguments->baselines);
+    options.every_texture = chosenFormats(arguments->baselines);
     options.ablation = arguments->ablation;
     options.shapes = arguments->shapes;
     options.blends = arguments->blends;
     if (!arguments->picture.empty()) options.pictures = PictureOptions{.map = arguments->picture_map};
     options.memory_bytes = parseBytes("--memory", arguments->memory);
     TerminalProgress progress(common.quiet);
-    requireReportPlace(arguments->report);
     const CancelOnSignal cancel(progress);
     const Package package = Package::open(arguments->package);
-    const Evaluation evaluation = evaluatePackage(openCapture(arguments->capture), package, options,
-                                                  openDevice(arguments->device, &progress), progress);
-    if (!arguments->report.empty()) writeReport(arguments->report, toJson(evaluation));
+    const Capture capture = openCapture(arguments->capture);
+    const ProtectedPaths inputs = inputsOf(capture).add(inputsOf(package));
+    requireReportPlace(arguments->report, inputs);
+    requireReportPlace(arguments->picture, ProtectedPaths(inputs).add(arguments->report, "the report that is written"),
+                       "--picture");
+    const Evaluation evaluation =
+        evaluatePackage(capture, package, options, openDevice(arguments->device, &progress), progress);
+    if (!arguments->report.empty()) writeReport(arguments->report, toJson(evaluation), &progress);
     if (!arguments->picture.empty()) writeErrorSheet(arguments->picture, evaluation, pictureTitles(evaluation));
     printEvaluation(evaluation);
   });

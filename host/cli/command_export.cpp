@@ -37,7 +37,7 @@ void addExportCommand(CLI::App& app, const CommonOptions& common) {
           exportPackage(package, arguments->target, arguments->output, progress, memory_bytes);
       for (const std::string& loss : losses) progress.note(loss);
     });
-    fmt::print("Read {}\n", (std::filesystem::path(arguments->output) / "README.md").string());
+    say("Read {}\n", (std::filesystem::path(arguments->output) / "README.md").string());
   });
 }
 

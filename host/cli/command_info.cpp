@@ -8,6 +8,7 @@
 #include "commands.hpp"
 #include "facezip/check.hpp"
 #include "facezip/package.hpp"
+#include "facezip/printable.hpp"
 #include "option_types.hpp"
 #include "shared_options.hpp"
 #include "terminal.hpp"
@@ -27,26 +28,26 @@ void printWeights(const Package& package, std::size_t set) {
     if (static_cast<std::size_t>(map.weight_set) == set) users.push_back(map.name);
   }
   const std::string of = package.weightSets().size() == 1 ? "" : fmt::format(" of {}", fmt::join(users, ", "));
-  fmt::print("  weights{}: {} x {} for each expression, {} x {} tiles in {}\n", of, weights.tile_width,
-             weights.tile_height, weights.columns, weights.rows, fmt::join(weights.files, ", "));
+  say("  weights{}: {} x {} for each expression, {} x {} tiles in {}\n", of, weights.tile_width, weights.tile_height,
+      weights.columns, weights.rows, fmt::join(weights.files, ", "));
 }
 
 void printPackage(const Package& package) {
   const auto plural = [](std::size_t count) { return count == 1 ? "" : "s"; };
   const std::size_t expressions = package.expressions().size();
   const auto differences = static_cast<std::size_t>(package.differences());
-  fmt::print("{}: {} expression{}, {} difference texture{} a map, made by {}\n", package.name(), expressions,
-             plural(expressions), differences, plural(differences), package.description().generator);
+  say("{}: {} expression{}, {} difference texture{} a map, made by {}\n", printable(package.name()), expressions,
+      plural(expressions), differences, plural(differences), printable(package.description().generator));
   for (const PackageMap& map : package.maps()) {
-    fmt::print("  map {}: {} x {}, {} channel{}, {}{}{}, differences in {} bits, {} texels to a weight texel\n",
-               map.name, map.width, map.height, map.channels, map.channels == 1 ? "" : "s", sampleName(map.sample_type),
-               map.colour_space.empty() ? "" : ", ", map.colour_space, map.difference_bits, map.weight_scale);
+    say("  map {}: {} x {}, {} channel{}, {}{}{}, differences in {} bits, {} texels to a weight texel\n", map.name,
+        map.width, map.height, map.channels, map.channels == 1 ? "" : "s", sampleName(map.sample_type),
+        map.colour_space.empty() ? "" : ", ", map.colour_space, map.difference_bits, map.weight_scale);
   }
   for (std::size_t set = 0; set < package.weightSets().size(); ++set) printWeights(package, set);
-  fmt::print("  memory: {} at run time, {} on disk\n", formatMegabytes(package.bytesInMemory()),
-             formatMegabytes(package.bytesOnDisk()));
-  fmt::print("  expressions: {}\n", fmt::join(package.expressions(), ", "));
-  fmt::print("  method: {}\n", package.methodJson());
+  say("  memory: {} at run time, {} on disk\n", formatMegabytes(package.bytesInMemory()),
+      formatMegabytes(package.bytesOnDisk()));
+  say("  expressions: {}\n", fmt::join(package.expressions(), ", "));
+  say("  method: {}\n", package.methodJson());
 }
 
 }  // namespace

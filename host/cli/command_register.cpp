@@ -4,6 +4,7 @@
 #include "commands.hpp"
 #include "facezip/registration.hpp"
 #include "facezip/report.hpp"
+#include "option_types.hpp"
 #include "shared_options.hpp"
 #include "tables.hpp"
 #include "terminal.hpp"
@@ -39,6 +40,7 @@ void addRegisterCommand(CLI::App& app, const CommonOptions& common) {
       ->required()
       ->type_name("CAPTURE");
   command->add_option("--resolution", arguments->options.resolution, "Side of the capture's textures in texels")
+      ->transform(wholeNumber())
       ->capture_default_str();
   command->add_option("--landmarks", arguments->landmarks, "Landmarks of the scans (default: SCANS/landmarks.json)")
       ->type_name("FILE");
@@ -51,13 +53,15 @@ void addRegisterCommand(CLI::App& app, const CommonOptions& common) {
       ->type_name("FILE");
   command->callback([arguments, &common] {
     TerminalProgress progress(common.quiet);
-    requireReportPlace(arguments->report);
-    const CancelOnSignal cancel(progress);
     arguments->options.landmarks = arguments->landmarks;
+    requireReportPlace(arguments->report,
+                       inputsOf(arguments->scans, arguments->registration_template, arguments->options)
+                           .add(arguments->output, "the capture that is written"));
+    const CancelOnSignal cancel(progress);
     const Device device = openDevice(arguments->device, &progress);
     const RegistrationReport report = registerScans(arguments->scans, arguments->registration_template,
                                                     arguments->output, arguments->options, device, progress);
-    if (!arguments->report.empty()) writeReport(arguments->report, toJson(report));
+    if (!arguments->report.empty()) writeReport(arguments->report, toJson(report), &progress);
     printRegistrationReport(report);
   });
 }

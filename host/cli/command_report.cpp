@@ -7,6 +7,7 @@
 #include "commands.hpp"
 #include "facezip/evaluate.hpp"
 #include "facezip/html_report.hpp"
+#include "facezip/report.hpp"
 #include "option_types.hpp"
 #include "shared_options.hpp"
 #include "terminal.hpp"
@@ -48,13 +49,18 @@ void report(const Arguments& arguments, Progress& progress) {
   options.mask_sweep = arguments.mask_sweep;
   options.memory_bytes = parseBytes("--memory", arguments.memory);
   const Package package = Package::open(arguments.package);
+  const Capture capture = openCapture(arguments.capture);
+  requireReportPlace(
+      arguments.output,
+      inputsOf(capture).add(inputsOf(package)).addFile(arguments.compress_report, "the report that is read"),
+      "--output");
   const std::size_t pictures = package.expressions().size() * (arguments.map.empty() ? package.maps().size() : 1);
   options.pictures =
       PictureOptions{.map = arguments.map, .all_maps = true, .paper_and_pca = false, .side = pictureSide(pictures)};
   const Device device = openDevice(arguments.device, &progress);
-  const Evaluation evaluation = evaluatePackage(openCapture(arguments.capture), package, options, device, progress);
-  writeHtmlReport(arguments.output, package, evaluation, {device.info().name, compressed});
-  fmt::print("Look at {}\n", arguments.output);
+  const Evaluation evaluation = evaluatePackage(capture, package, options, device, progress);
+  writeHtmlReport(arguments.output, package, evaluation, {device.info().name, compressed}, &progress);
+  say("Look at {}\n", arguments.output);
 }
 
 }  // namespace
@@ -70,6 +76,7 @@ void addReportCommand(CLI::App& app, const CommonOptions& common) {
   command
       ->add_option("--mask-sweep", arguments->mask_sweep,
                    "Numbers of masks to compress with and to plot: 8,16,32,64. Two compressions each")
+      ->transform(wholeNumber())
       ->delimiter(',')
       ->type_name("K,...");
   command->add_option("--compress-report", arguments->compress_report, "What `facezip compress --report` wrote")

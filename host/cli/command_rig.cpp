@@ -6,6 +6,7 @@
 #include "commands.hpp"
 #include "facezip/report.hpp"
 #include "facezip/rig.hpp"
+#include "option_types.hpp"
 #include "shared_options.hpp"
 #include "tables.hpp"
 #include "terminal.hpp"
@@ -48,6 +49,7 @@ void addRigCommand(CLI::App& app, const CommonOptions& common) {
                    "Weights of the shapes that the expressions are thought to have (.csv or .json, docs/rig.md)")
       ->type_name("GUESS");
   command->add_option("--iterations", arguments->iterations, "Turns of fitting shapes and weights")
+      ->transform(wholeNumber())
       ->capture_default_str();
   command
       ->add_option("--transfer", arguments->transfer,
@@ -68,6 +70,7 @@ void addRigCommand(CLI::App& app, const CommonOptions& common) {
           ->add_option("--texture-damping", arguments->texture_damping,
                        "lambda of local and damped (default: local: what predicts each expression best from the "
                        "others; damped: 0.3)")
+          ->transform(decimalNumber())
           ->type_name("NUMBER");
   addMapsOption(*command, arguments->maps, "Maps to take (default: all)");
   addCompressOptions(*command, arguments->compress);
@@ -86,12 +89,14 @@ void addRigCommand(CLI::App& app, const CommonOptions& common) {
     options.texture_solve = *findNamed<TextureSolve>(arguments->texture_solve);  // CLI11 has checked it
     if (damping->count() > 0) options.texture_damping = arguments->texture_damping;
     TerminalProgress progress(common.quiet);
-    requireReportPlace(arguments->report);
     const CancelOnSignal cancel(progress);
     const Capture capture = openCapture(arguments->capture, arguments->maps, &progress);
+    requireReportPlace(
+        arguments->report,
+        inputsOf(capture, arguments->rig_template, options).add(arguments->output, "the package that is written"));
     const Device device = openDevice(arguments->device, &progress);
     const RigReport report = rigCapture(capture, arguments->rig_template, arguments->output, options, device, progress);
-    if (!arguments->report.empty()) writeReport(arguments->report, toJson(report));
+    if (!arguments->report.empty()) writeReport(arguments->report, toJson(report), &progress);
     printRigReport(report);
   });
 }

@@ -9,6 +9,7 @@
 #include "facezip/geometry/obj_io.hpp"
 #include "facezip/report.hpp"
 #include "facezip/rig.hpp"
+#include "option_types.hpp"
 #include "tables.hpp"
 #include "terminal.hpp"
 
@@ -59,6 +60,7 @@ void addSolveWeightsCommand(CLI::App& app, const CommonOptions& common) {
   command
       ->add_option("--smoothing", arguments->options.smoothing,
                    "Pull between the weights of neighbouring frames, 0: none; 0.01 is light")
+      ->transform(decimalNumber())
       ->capture_default_str();
   command->add_flag("--head-motion", arguments->options.head_motion,
                     "The head moves in the meshes: take its rigid motion out of each frame");
@@ -66,11 +68,15 @@ void addSolveWeightsCommand(CLI::App& app, const CommonOptions& common) {
       ->type_name("FILE");
   command->callback([arguments, &common] {
     TerminalProgress progress(common.quiet);
-    requireReportPlace(arguments->report);
+    ProtectedPaths taken;
+    taken.add(arguments->package, "the package that is read");
+    for (const std::string& meshes : arguments->meshes) taken.add(meshes, "a mesh that is read");
+    requireReportPlace(arguments->output, taken, "--output");
+    requireReportPlace(arguments->report, taken.add(arguments->output, "the clip that is written"));
     const CancelOnSignal cancel(progress);
     const SolvedClip clip = solveWeights(arguments->package, framesOf(arguments->meshes), arguments->options, progress);
-    writeClip(arguments->output, clip);
-    if (!arguments->report.empty()) writeReport(arguments->report, toJson(clip));
+    writeClip(arguments->output, clip, &progress);
+    if (!arguments->report.empty()) writeReport(arguments->report, toJson(clip), &progress);
     printSolvedClip(clip);
   });
 }

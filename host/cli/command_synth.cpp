@@ -5,6 +5,7 @@
 #include "cancel_on_signal.hpp"
 #include "commands.hpp"
 #include "facezip/synth.hpp"
+#include "option_types.hpp"
 #include "shared_options.hpp"
 #include "terminal.hpp"
 
@@ -20,8 +21,11 @@ void addSynthCommand(CLI::App& app, const CommonOptions& common) {
       "synth", "Writes the built-in capture: a procedural head with textures that follow its deformation");
   command->add_option("-o,--output", arguments->output, "Directory of the capture")->required()->type_name("DIR");
   command->add_option("--resolution", arguments->options.resolution, "Side of the textures in texels")
+      ->transform(wholeNumber())
       ->capture_default_str();
-  command->add_option("--expressions", arguments->options.expressions, "Number of expressions")->capture_default_str();
+  command->add_option("--expressions", arguments->options.expressions, "Number of expressions")
+      ->transform(wholeNumber())
+      ->capture_default_str();
   addMapsOption(*command, arguments->options.maps, "Maps to make: albedo, normal, specular, roughness, displacement");
   addSeedOption(*command, arguments->options.seed, "Seed of the face");
   command->add_flag("--template", arguments->options.rig_template,
@@ -30,7 +34,7 @@ void addSynthCommand(CLI::App& app, const CommonOptions& common) {
     TerminalProgress progress(common.quiet);
     const CancelOnSignal cancel(progress);
     synthesizeCapture(arguments->output, arguments->options, progress);
-    fmt::print("{}\n", arguments->output);
+    say("{}\n", arguments->output);
   });
 }
 

@@ -8,6 +8,7 @@
 #include "cancel_on_signal.hpp"
 #include "commands.hpp"
 #include "facezip/view.hpp"
+#include "option_types.hpp"
 #include "serve.hpp"
 #include "terminal.hpp"
 
@@ -23,11 +24,11 @@ struct Arguments {
 void view(const Arguments& arguments, const Package& package, Progress& progress) {
   if (arguments.output) {
     writeViewer(package, *arguments.output, progress);
-    fmt::print("Look at {}\n", (std::filesystem::path(*arguments.output) / "index.html").string());
+    say("Look at {}\n", (std::filesystem::path(*arguments.output) / "index.html").string());
     return;
   }
   const auto started = [](int port) {
-    fmt::print("Look at http://127.0.0.1:{}/ (Ctrl-C ends)\n", port);
+    say("Look at http://127.0.0.1:{}/ (Ctrl-C ends)\n", port);
     std::fflush(stdout);  // for those who read a pipe
   };
   serveViewer(package, arguments.port, started, progress);
@@ -44,6 +45,7 @@ void addViewCommand(CLI::App& app, const CommonOptions& common) {
       command->add_option("-o,--output", arguments->output, "Write the page into a folder instead of serving it")
           ->type_name("DIR");
   command->add_option("--port", arguments->port, "Port to serve on, of this machine alone; 0: any that is free")
+      ->transform(wholeNumber())
       ->check(CLI::Range(0, 65535))
       ->excludes(output)
       ->capture_default_str();

@@ -10,20 +10,23 @@
 #include <cstring>
 #include <exception>
 #include <new>
+#include <sstream>
 #include <string>
 
 #include "commands.hpp"
 #include "exit_codes.hpp"
 #include "facezip/device.hpp"
 #include "facezip/error.hpp"
+#include "facezip/printable.hpp"
 #include "facezip/progress.hpp"
 #include "facezip/version.hpp"
+#include "terminal.hpp"
 
 namespace facezip::cli {
 namespace {
 
 int fail(ExitCode code, const std::string& what) {
-  std::fputs(("facezip: error: " + what + "\n").c_str(), stderr);
+  printError("facezip: error: " + what + "\n");
   return code;
 }
 
@@ -56,7 +59,9 @@ int runCommand(CLI::App& app, int argc, char** argv) {
   } catch (const CLI::Success& request) {
     return app.exit(request);  // --help, --version
   } catch (const CLI::ParseError& error) {
-    app.exit(error);
+    std::ostringstream text;
+    app.exit(error, text, text);
+    printError(text.str());
     return kExitUsage;
   } catch (const Cancelled&) {
     return fail(kExitCancelled, "cancelled; nothing was written");
@@ -71,7 +76,7 @@ int runCommand(CLI::App& app, int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return fail(kExitInternal, "out of memory; lower --memory");
   } catch (const std::exception& error) {
-    return std::ferror(stdout) != 0 ? failToPrint() : fail(kExitInternal, error.what());
+    return std::ferror(stdout) != 0 ? failToPrint() : fail(kExitInternal, printable(error.what()));
   }
 }
 

@@ -33,6 +33,40 @@ std::uint64_t parseSeed(const std::string& option, const std::string& text) {
   throw InputError({option, "", "a whole number from 0 to 18446744073709551615", text, ""});
 }
 
+namespace {
+
+/// Writes the number that `text` is as CLI11 reads it; false where it is none.
+template <typename Number>
+bool normalise(std::string& text) {
+  const std::size_t plus = text.starts_with('+') && !text.starts_with("+-") ? 1 : 0;
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data() + plus, text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return false;
+  text = fmt::format("{}", number);
+  return true;
+}
+
+template <typename Number>
+CLI::Validator makeValidator(const std::string& what) {
+  return {[what](std::string& text) {
+            const std::string given = text;
+            return normalise<Number>(text) ? std::string() : fmt::format("expected {}, got \"{}\"", what, given);
+          },
+          ""};
+}
+
+}  // namespace
+
+const CLI::Validator& wholeNumber() {
+  static const CLI::Validator validator = makeValidator<std::int64_t>("a whole number");
+  return validator;
+}
+
+const CLI::Validator& decimalNumber() {
+  static const CLI::Validator validator = makeValidator<double>("a number");
+  return validator;
+}
+
 std::string formatMegabytes(std::uint64_t bytes) { return fmt::format("{:.2f} MB", static_cast<double>(bytes) / 1e6); }
 
 }  // namespace facezip::cli

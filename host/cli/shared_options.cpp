@@ -3,6 +3,20 @@
 #include "option_types.hpp"
 
 namespace facezip::cli {
+namespace {
+
+BlockFormat parseTextureFormat(const std::string& name, const std::string& option) {
+  try {
+    return blockFormatOf(name, option);
+  } catch (const InputError& error) {
+    InputError::Parts parts = error.parts();
+    parts.expected = "png or " + parts.expected;
+    throw InputError(parts);
+  }
+}
+
+}  // namespace
+
 void addDeviceOption(CLI::App& command, std::string& selector) {
   command
       .add_option("--device", selector,
@@ -41,14 +55,17 @@ void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
   CLI::Option* differences = command
                                  .add_option("--differences", options.differences,
                                              "Difference textures of a map, and weights of a cell: 1 to 8")
+                                 ->transform(wholeNumber())
                                  ->capture_default_str();
   CLI::Option* scale = command
                            .add_option("--weight-scale", options.weight_scale,
                                        "Texels of the largest map per weight texel, along each axis")
+                           ->transform(wholeNumber())
                            ->capture_default_str();
   command
       .add_option("--target-rmse", arguments.target_rmse,
                   "Find the smallest package of at most this error (0..255), instead of the two above")
+      ->transform(decimalNumber())
       ->type_name("RMSE")
       ->excludes(differences)
       ->excludes(scale);
@@ -56,6 +73,17 @@ void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
       ->type_name("SIZE")
       ->excludes(differences)
       ->excludes(scale);
+  CLI::Option* format =
+      command
+          .add_option("--texture-format", arguments.texture_format,
+                      "png, or a block format that textures of 8 bits are fitted to: " + blockFormatNames())
+          ->type_name("FORMAT")
+          ->capture_default_str();
+  command
+      .add_option("--difference-format", arguments.difference_format,
+                  "Block format of the difference textures, where it is to be another")
+      ->type_name("FORMAT")
+      ->needs(format);
   command.add_flag("--weights-per-map", options.weights_per_map, "Give every map weights of its own");
   CLI::Option* radius =
       command
@@ -63,16 +91,22 @@ void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
                       "Distance between mask samples: 3cm, 0.03m; a bare number is in the mesh's unit")
           ->type_name("LENGTH")
           ->capture_default_str();
-  command.add_option("--masks", arguments.masks, "Number of masks, instead of their distance")->excludes(radius);
-  command.add_option("--mask-cutoff", options.mask_cutoff, "Mask weights below this are cut")->capture_default_str();
+  command.add_option("--masks", arguments.masks, "Number of masks, instead of their distance")
+      ->transform(wholeNumber())
+      ->excludes(radius);
+  command.add_option("--mask-cutoff", options.mask_cutoff, "Mask weights below this are cut")
+      ->transform(decimalNumber())
+      ->capture_default_str();
   command
       .add_option("--permutation-solver", arguments.permutation_solver,
                   "descent: the paper's, from random starts; message-passing: with its bound; best: the better of both")
       ->check(CLI::IsMember(allNames<PermutationSolver>()))
       ->capture_default_str();
   command.add_option("--restarts", options.restarts, "Random starts of the permutation search by descent")
+      ->transform(wholeNumber())
       ->capture_default_str();
   command.add_option("--cluster-restarts", options.cluster_restarts, "Random starts of the clustering of each mask")
+      ->transform(wholeNumber())
       ->capture_default_str();
   addSeedOption(command, options.seed, "Seed of every random choice");
   command.add_option("--unit", arguments.unit, "Unit of the meshes (mm, cm, m, in, ...), over what the capture states")
@@ -85,8 +119,10 @@ void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
       .add_option("--importance", options.importance,
                   "Painted image of where errors matter more (default: the capture's importance.png), or none")
       ->type_name("FILE");
-  command.add_option("--gutter", arguments.gutter,
-                     "Texels around UV islands that get masks too (default: 1/64 of the side, at least 16)");
+  command
+      .add_option("--gutter", arguments.gutter,
+                  "Texels around UV islands that get masks too (default: 1/64 of the side, at least 16)")
+      ->transform(wholeNumber());
   command.add_flag("!--no-mesh", options.mesh, "Leave the meshes out of the package: no viewer, no exports");
   addMemoryOption(command, arguments.memory);
 }
@@ -99,6 +135,12 @@ CompressOptions parseCompressOptions(const CompressArguments& arguments) {
     options.mask_radius = geometry::parseLength(arguments.mask_radius);
   } catch (const InputError& error) {
     throw error.in("--mask-radius " + arguments.mask_radius);
+  }
+  if (arguments.texture_format != "png") {
+    options.texture_format = parseTextureFormat(arguments.texture_format, "--texture-format");
+  }
+  if (!arguments.difference_format.empty()) {
+    options.difference_format = blockFormatOf(arguments.difference_format, "--difference-format");
   }
   options.target_rmse = arguments.target_rmse;
   if (!arguments.budget.empty()) options.budget_bytes = parseBytes("--budget", arguments.budget);

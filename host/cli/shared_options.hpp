@@ -24,6 +24,8 @@ void addMapsOption(CLI::App& command, std::vector<std::string>& maps, const std:
 struct CompressArguments {
   std::string method = "refined";
   std::string permutation_solver = "best";
+  std::string texture_format = "png";
+  std::string difference_format;
   std::string mask_radius = "3cm";
   std::optional<int> masks;
   std::optional<double> target_rmse;

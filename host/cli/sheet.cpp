@@ -2,9 +2,11 @@
 
 #include <OpenImageIO/imagebufalgo.h>
 
-#include <system_error>
+#include <cstddef>
+#include <vector>
 
 #include "facezip/error.hpp"
+#include "facezip/frame_file.hpp"
 
 namespace facezip::cli {
 namespace fs = std::filesystem;
@@ -40,21 +42,12 @@ void Sheet::write(int x, int y, const std::string& text) {
 }
 
 void Sheet::save(const fs::path& file) const {
-  // The extension, which decides the format, stays last.
-  std::error_code error;
-  if (fs::exists(file, error) && !fs::is_regular_file(file, error)) {
-    throw OutputError(file, "something that is no file is in the way", "choose another name");
-  }
-  const fs::path target = fs::weakly_canonical(file);  // what a link leads to
-  const fs::path partial =
-      target.parent_path() / ("." + target.stem().string() + ".partial" + target.extension().string());
-  fs::create_directories(target.parent_path(), error);  // else writing fails, and says why
-  if (!image_.write(partial.string())) {
-    fs::remove(partial, error);
+  const OIIO::ImageSpec& spec = image_.spec();
+  std::vector<std::byte> samples(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) * 3);
+  if (!image_.get_pixels(OIIO::ROI(0, spec.width, 0, spec.height, 0, 1, 0, 3), OIIO::TypeDesc::UINT8, samples.data())) {
     throw OutputError(file, image_.geterror());
   }
-  fs::rename(partial, target, error);
-  if (error) throw OutputError(file, error.message());
+  writePicture(file, spec.width, spec.height, samples);
 }
 
 }  // namespace facezip::cli

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "option_types.hpp"
+#include "terminal.hpp"
 
 namespace facezip::cli {
 namespace {
@@ -13,9 +14,9 @@ namespace {
 void printSeconds(const std::vector<std::pair<std::string, double>>& seconds) {
   double total = 0.0;
   for (const auto& [stage, time] : seconds) total += time;
-  fmt::print("{:<34}{:>10}\n", "stage", "seconds");
-  for (const auto& [stage, time] : seconds) fmt::print("{:<34}{:>10.2f}\n", stage, time);
-  fmt::print("{:<34}{:>10.2f}\n", "total", total);
+  say("{:<34}{:>10}\n", "stage", "seconds");
+  for (const auto& [stage, time] : seconds) say("{:<34}{:>10.2f}\n", stage, time);
+  say("{:<34}{:>10.2f}\n", "total", total);
 }
 
 /// Methods that have a column of their own: the package's own method is the package.
@@ -28,28 +29,28 @@ std::vector<std::string> columnsOf(const Evaluation& evaluation, const Evaluatio
 }
 
 void printErrors(const Evaluation& evaluation, const Evaluation::Map& map) {
-  fmt::print("\n{}: RMSE over the covered texels, 0..255 (difference to the neutral: {:.3f})\n{:<34}", map.name,
-             map.rms_difference, "expression");
+  say("\n{}: RMSE over the covered texels, 0..255 (difference to the neutral: {:.3f})\n{:<34}", map.name,
+      map.rms_difference, "expression");
   const std::vector<std::string> columns = columnsOf(evaluation, map);
-  for (const std::string& key : columns) fmt::print("{:>14}", evaluationTitle(key));
+  for (const std::string& key : columns) say("{:>14}", evaluationTitle(key));
   for (std::size_t n = 0; n < evaluation.expressions.size(); ++n) {
-    fmt::print("\n{:<34}", evaluation.expressions[n]);
+    say("\n{:<34}", evaluation.expressions[n]);
     for (const std::string& key : columns) {
       const std::vector<double>& each = map.rmse.at(key).per_expression;
-      fmt::print("{:>14}", each.empty() ? "-" : fmt::format("{:.3f}", each[n]));
+      say("{:>14}", each.empty() ? "-" : fmt::format("{:.3f}", each[n]));
     }
   }
-  fmt::print("\n{:<34}", "all");
-  for (const std::string& key : columns) fmt::print("{:>14.3f}", map.rmse.at(key).pooled);
-  fmt::print("\n");
+  say("\n{:<34}", "all");
+  for (const std::string& key : columns) say("{:>14.3f}", map.rmse.at(key).pooled);
+  say("\n");
 }
 
 void printTexelErrors(const std::string& name, const TexelErrors& errors) {
-  fmt::print("{:<34}{:>14.2f}{:>14.2f}{:>14.2f}\n", name, errors.psnr, errors.p99, errors.max);
+  say("{:<34}{:>14.2f}{:>14.2f}{:>14.2f}\n", name, errors.psnr, errors.p99, errors.max);
 }
 
 void printDetail(const Evaluation& evaluation, const Evaluation::Map& map) {
-  fmt::print("\n{:<34}{:>14}{:>14}{:>14}\n", map.name + ": texels of the package", "PSNR dB", "99th pct", "largest");
+  say("\n{:<34}{:>14}{:>14}{:>14}\n", map.name + ": texels of the package", "PSNR dB", "99th pct", "largest");
   const auto& package = map.detail.at("package");
   for (std::size_t n = 0; n < evaluation.expressions.size(); ++n) {
     printTexelErrors(evaluation.expressions[n], package.per_expression[n]);
@@ -62,24 +63,24 @@ void printDetail(const Evaluation& evaluation, const Evaluation::Map& map) {
 
 void printAngles(const Evaluation& evaluation, const Evaluation::Map& map) {
   if (map.angles.empty()) return;
-  fmt::print("\n{:<34}{:>14}{:>14}{:>14}\n", map.name + ": angle of normals, degrees", "mean", "99th pct", "largest");
+  say("\n{:<34}{:>14}{:>14}{:>14}\n", map.name + ": angle of normals, degrees", "mean", "99th pct", "largest");
   for (const std::string& key : columnsOf(evaluation, map)) {
     const auto found = map.angles.find(key);
     if (found == map.angles.end()) continue;
     const NormalAngles& angles = found->second.pooled;
-    fmt::print("{:<34}{:>14.3f}{:>14.2f}{:>14.2f}\n", evaluationTitle(key), angles.mean, angles.p99, angles.max);
+    say("{:<34}{:>14.3f}{:>14.2f}{:>14.2f}\n", evaluationTitle(key), angles.mean, angles.p99, angles.max);
   }
 }
 
 void printBlends(const Evaluation& evaluation, const Evaluation::Map& map) {
   if (map.blends.empty()) return;
-  fmt::print("\n{:<34}{:>14}{:>14}\n", fmt::format("{}: {} random blends", map.name, evaluation.blend_weights.size()),
-             "RMSE", "of bound");
+  say("\n{:<34}{:>14}{:>14}\n", fmt::format("{}: {} random blends", map.name, evaluation.blend_weights.size()), "RMSE",
+      "of bound");
   for (const std::string& key : columnsOf(evaluation, map)) {
     const auto found = map.blends.find(key);
     if (found == map.blends.end()) continue;
-    fmt::print("{:<34}{:>14.3f}{:>12.0f} %\n", evaluationTitle(key), found->second.rmse,
-               100.0 * found->second.largest_share_of_bound);
+    say("{:<34}{:>14.3f}{:>12.0f} %\n", evaluationTitle(key), found->second.rmse,
+        100.0 * found->second.largest_share_of_bound);
   }
 }
 
@@ -90,86 +91,86 @@ template <typename Value, typename Cell>
 void printAblation(const std::string& title, const std::map<std::string, std::map<int, Value>>& values,
                    const Cell& cell) {
   if (values.empty()) return;
-  fmt::print("\n{:<34}", title);
-  for (const int differences : kAblatedDifferences) fmt::print("{:>14}", fmt::format("C = {}", differences));
+  say("\n{:<34}", title);
+  for (const int differences : kAblatedDifferences) say("{:>14}", fmt::format("C = {}", differences));
   for (const auto& [key, name] : evaluationTitles()) {
     const auto row = values.find(key);
     if (row == values.end()) continue;
-    fmt::print("\n{:<34}", name);
+    say("\n{:<34}", name);
     for (const int differences : kAblatedDifferences) {
       const auto value = row->second.find(differences);
-      fmt::print("{:>14}", value == row->second.end() ? "" : cell(value->second));
+      say("{:>14}", value == row->second.end() ? "" : cell(value->second));
     }
   }
-  fmt::print("\n");
+  say("\n");
 }
 
 void printBytes(const Evaluation& evaluation) {
   std::vector<std::pair<std::string, std::string>> rows = evaluationTitles();
   rows.insert(rows.end(), {{"raw", "all textures"}, {"package_disk", "package, files on disk"}});
-  fmt::print("\n{:<34}{:>14}\n", "run-time memory", "");
+  say("\n{:<34}{:>14}\n", "run-time memory", "");
   for (const auto& [key, title] : rows) {
     const auto found = evaluation.bytes.find(key);
     if (found == evaluation.bytes.end() || key == evaluation.method) continue;
-    fmt::print("{:<34}{:>14}\n", title, formatMegabytes(found->second));
+    say("{:<34}{:>14}\n", title, formatMegabytes(found->second));
   }
 }
 
 void printPermutation(const CompressReport& report) {
   if (!report.permutation_bound) {
-    fmt::print("permutation cost {:.4g} (not permuted)\n", report.permutation_cost);
+    say("permutation cost {:.4g} (not permuted)\n", report.permutation_cost);
     return;
   }
-  fmt::print("permutation cost {:.4g}, lower bound {:.4g}, gap {:.2f} %", report.permutation_cost,
-             *report.permutation_bound, 100.0 * report.permutationGap());
+  say("permutation cost {:.4g}, lower bound {:.4g}, gap {:.2f} %", report.permutation_cost, *report.permutation_bound,
+      100.0 * report.permutationGap());
   if (!report.restart_costs.empty()) {
-    fmt::print("; median of {} restarts {:.4g}", report.restart_costs.size(), report.permutation_cost_median);
+    say("; median of {} restarts {:.4g}", report.restart_costs.size(), report.permutation_cost_median);
   }
-  fmt::print("\n");
+  say("\n");
 }
 
 /// What a target or budget was chosen from, and what was taken.
 void printRateCurve(const CompressReport& report) {
   if (report.rate_curve.empty()) return;
-  fmt::print("{:<14}{:>12}{:>12}{:>16}\n", "differences", "weights at", "memory", "expected RMSE");
+  say("{:<14}{:>12}{:>12}{:>16}\n", "differences", "weights at", "memory", "expected RMSE");
   for (const RatePoint& point : report.rate_curve) {
-    fmt::print("{:<14}{:>12}{:>12}{:>16.3f}{}\n",
-               fmt::format("{}{}", point.differences, point.code_bits == 16 ? ", 16-bit" : ""),
-               fmt::format("1/{}", point.weight_scale), formatMegabytes(point.bytes), point.rmse,
-               point == report.rate ? "  <- taken" : "");
+    say("{:<14}{:>12}{:>12}{:>16.3f}{}\n",
+        fmt::format("{}{}", point.differences, point.code_bits == 16 ? ", 16-bit" : ""),
+        fmt::format("1/{}", point.weight_scale), formatMegabytes(point.bytes), point.rmse,
+        point == report.rate ? "  <- taken" : "");
   }
-  fmt::print("\n");
+  say("\n");
 }
 
 }  // namespace
 
 void printCompressReport(const CompressReport& report) {
   printRateCurve(report);
-  fmt::print("{} masks, {} overlapping pairs, {} covered texels\n", report.masks, report.overlapping_pairs,
-             report.covered_texels);
-  fmt::print("mask tails cut: {:.2f} % of a vertex's weight on average, {:.1f} % at most; {:.1f} masks at a vertex\n",
-             100.0 * report.cut_mass_mean, 100.0 * report.cut_mass_max, report.active_masks_mean);
-  fmt::print("textures {}, in bands of {} rows\n",
-             report.decoded == "scratch file" ? "decoded once, into a scratch file" : "decoded again in every pass",
-             report.band_rows);
+  say("{} masks, {} overlapping pairs, {} covered texels\n", report.masks, report.overlapping_pairs,
+      report.covered_texels);
+  say("mask tails cut: {:.2f} % of a vertex's weight on average, {:.1f} % at most; {:.1f} masks at a vertex\n",
+      100.0 * report.cut_mass_mean, 100.0 * report.cut_mass_max, report.active_masks_mean);
+  say("textures {}, in bands of {} rows\n",
+      report.decoded == "scratch file" ? "decoded once, into a scratch file" : "decoded again in every pass",
+      report.band_rows);
   printPermutation(report);
   if (report.refinement_errors.size() > 1 && report.refinement_errors.front() > 0.0) {
-    fmt::print("refining: squared error");
+    say("refining: squared error");
     for (const double error : report.refinement_errors) {
-      fmt::print(" {:.1f} %", 100.0 * error / report.refinement_errors.front());
+      say(" {:.1f} %", 100.0 * error / report.refinement_errors.front());
     }
-    fmt::print("\n");
+    say("\n");
   }
-  for (const auto& [map, rmse] : report.rmse) fmt::print("{}: RMSE {:.3f} (0..255)\n", map, rmse);
-  fmt::print("package on disk {}, peak memory {}\n\n", formatMegabytes(report.package_disk_bytes),
-             formatMegabytes(report.peak_memory_bytes));
+  for (const auto& [map, rmse] : report.rmse) say("{}: RMSE {:.3f} (0..255)\n", map, rmse);
+  say("package on disk {}, peak memory {}\n\n", formatMegabytes(report.package_disk_bytes),
+      formatMegabytes(report.peak_memory_bytes));
   printSeconds(report.seconds);
-  fmt::print("{:<34}{:>10.2f}\n", "  of it waiting for textures", report.wait_seconds);
-  fmt::print("{:<34}{:>10.2f}\n", "  decoding, beside the work", report.decode_seconds);
+  say("{:<34}{:>10.2f}\n", "  of it waiting for textures", report.wait_seconds);
+  say("{:<34}{:>10.2f}\n", "  decoding, beside the work", report.decode_seconds);
 }
 
 void printEvaluation(const Evaluation& evaluation) {
-  fmt::print("package: {} method, C = {}\n", evaluationTitle(evaluation.method), evaluation.differences);
+  say("package: {} method, C = {}\n", evaluationTitle(evaluation.method), evaluation.differences);
   for (const Evaluation::Map& map : evaluation.maps) {
     printErrors(evaluation, map);
     printDetail(evaluation, map);
@@ -180,16 +181,16 @@ void printEvaluation(const Evaluation& evaluation) {
   }
   printAblation("run-time memory, by C", evaluation.ablation_bytes, formatMegabytes);
   printBytes(evaluation);
-  fmt::print("\n");
+  say("\n");
   printSeconds(evaluation.seconds);
 }
 
 void printRigReport(const RigReport& report) {
-  fmt::print("{} shapes on {} vertices ({} of the skin), from {} expressions; transferred by {}\n",
-             report.shapes.size(), report.vertices, report.skin_vertices, report.expressions.size(), report.transfer);
-  fmt::print("\n{:<34}{:>22}{:>32}\n", "distance to the captured mesh, mm", "rig", "template alone");
-  fmt::print("{:<34}{:>10}{:>10}{:>10}{:>12}{:>10}{:>10}\n", "expression", "mean", "99th pct", "largest", "mean",
-             "99th pct", "largest");
+  say("{} shapes on {} vertices ({} of the skin), from {} expressions; transferred by {}\n", report.shapes.size(),
+      report.vertices, report.skin_vertices, report.expressions.size(), report.transfer);
+  say("\n{:<34}{:>22}{:>32}\n", "distance to the captured mesh, mm", "rig", "template alone");
+  say("{:<34}{:>10}{:>10}{:>10}{:>12}{:>10}{:>10}\n", "expression", "mean", "99th pct", "largest", "mean", "99th pct",
+      "largest");
   RigResidual mean, template_mean;
   const double share = 1.0 / static_cast<double>(report.expressions.size());
   const auto add = [share](RigResidual& sum, const RigResidual& each) {
@@ -198,8 +199,8 @@ void printRigReport(const RigReport& report) {
     sum.largest += share * each.largest;
   };
   const auto row = [](const std::string& name, const RigResidual& rig, const RigResidual& by_template) {
-    fmt::print("{:<34}{:>10.3f}{:>10.3f}{:>10.3f}{:>12.3f}{:>10.3f}{:>10.3f}\n", name, rig.mean, rig.percentile_99,
-               rig.largest, by_template.mean, by_template.percentile_99, by_template.largest);
+    say("{:<34}{:>10.3f}{:>10.3f}{:>10.3f}{:>12.3f}{:>10.3f}{:>10.3f}\n", name, rig.mean, rig.percentile_99,
+        rig.largest, by_template.mean, by_template.percentile_99, by_template.largest);
   };
   for (std::size_t n = 0; n < report.expressions.size(); ++n) {
     row(report.expressions[n], report.residuals[n], report.template_residuals[n]);
@@ -212,36 +213,35 @@ void printRigReport(const RigReport& report) {
     for (const RigHeadMotion& motion : report.head_motions) {
       most = {std::max(most.degrees, motion.degrees), std::max(most.millimetres, motion.millimetres)};
     }
-    fmt::print("head motion taken out: up to {:.2f} degrees, {:.2f} mm\n", most.degrees, most.millimetres);
+    say("head motion taken out: up to {:.2f} degrees, {:.2f} mm\n", most.degrees, most.millimetres);
   }
-  fmt::print("rms over all, mm, after each iteration:");
-  for (const double rms : report.convergence) fmt::print(" {:.3f}", rms);
-  fmt::print("\ncloseness to the template {:g}: left-out expressions' gradients err {:.2f} of what the template errs",
-             report.shape_prior, report.left_out_share);
-  fmt::print("\n\ntextures of shapes: {}", report.texture_solve);
-  if (report.texture_damping > 0.0) fmt::print(", lambda {:g}", report.texture_damping);
+  say("rms over all, mm, after each iteration:");
+  for (const double rms : report.convergence) say(" {:.3f}", rms);
+  say("\ncloseness to the template {:g}: left-out expressions' gradients err {:.2f} of what the template errs",
+      report.shape_prior, report.left_out_share);
+  say("\n\ntextures of shapes: {}", report.texture_solve);
+  if (report.texture_damping > 0.0) say(", lambda {:g}", report.texture_damping);
   if (report.left_out_nothing > 0.0) {
-    fmt::print(", strain {:g}; expressions predicted from the others: RMSE {:.3f} (0..255) of {:.3f}",
-               report.strain_share, report.left_out_rmse, report.left_out_nothing);
+    say(", strain {:g}; expressions predicted from the others: RMSE {:.3f} (0..255) of {:.3f}", report.strain_share,
+        report.left_out_rmse, report.left_out_nothing);
   }
-  fmt::print("\n");
-  for (const auto& [map, rmse] : report.compress.rmse)
-    fmt::print("{}: RMSE {:.3f} as compressed (0..255)\n", map, rmse);
-  fmt::print("\n");
+  say("\n");
+  for (const auto& [map, rmse] : report.compress.rmse) say("{}: RMSE {:.3f} as compressed (0..255)\n", map, rmse);
+  say("\n");
   printSeconds(report.seconds);
 }
 
 void printRegistrationReport(const RegistrationReport& report) {
-  fmt::print("{} vertices, {} triangles of the region, in {}{}\n", report.vertices, report.region_triangles,
-             report.unit, report.unit_guessed ? " (guessed)" : "");
-  fmt::print("\n{:<34}{:>20}{:>20}{:>10}{:>20}\n", "scan to mesh, mm", "posed", "registered", "shown", "head moved");
-  fmt::print("{:<34}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "", "mean", "99th pct", "mean", "99th pct", "%",
-             "degrees", "mm");
+  say("{} vertices, {} triangles of the region, in {}{}\n", report.vertices, report.region_triangles, report.unit,
+      report.unit_guessed ? " (guessed)" : "");
+  say("\n{:<34}{:>20}{:>20}{:>10}{:>20}\n", "scan to mesh, mm", "posed", "registered", "shown", "head moved");
+  say("{:<34}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "", "mean", "99th pct", "mean", "99th pct", "%", "degrees",
+      "mm");
   for (const RegisteredScan& scan : report.scans) {
-    fmt::print("{:<34}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.1f}{:>10.2f}{:>10.2f}\n", scan.name, scan.model_mean,
-               scan.model_p99, scan.mean, scan.p99, 100.0 * scan.coverage, scan.degrees, scan.millimetres);
+    say("{:<34}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.1f}{:>10.2f}{:>10.2f}\n", scan.name, scan.model_mean,
+        scan.model_p99, scan.mean, scan.p99, 100.0 * scan.coverage, scan.degrees, scan.millimetres);
   }
-  fmt::print("\n");
+  say("\n");
   printSeconds(report.seconds);
 }
 
@@ -252,12 +252,11 @@ void printSolvedClip(const SolvedClip& clip) {
     mean += residual.mean / static_cast<double>(clip.residuals.size());
     if (residual.mean > worst.mean) worst = residual;
   }
-  fmt::print(
-      "{} frames, {} shapes; distance to the meshes: mean {:.3f} mm; worst frame: mean {:.3f}, 99th pct {:.3f}, "
+  say("{} frames, {} shapes; distance to the meshes: mean {:.3f} mm; worst frame: mean {:.3f}, 99th pct {:.3f}, "
       "largest {:.3f} mm\n",
       clip.weights.size(), clip.shapes.size(), mean, worst.mean, worst.percentile_99, worst.largest);
-  fmt::print("{:.2f} s, {:.1f} frames a second, reading included\n", clip.seconds,
-             static_cast<double>(clip.weights.size()) / std::max(clip.seconds, 1e-9));
+  say("{:.2f} s, {:.1f} frames a second, reading included\n", clip.seconds,
+      static_cast<double>(clip.weights.size()) / std::max(clip.seconds, 1e-9));
 }
 
 }  // namespace facezip::cli

@@ -3,7 +3,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <system_error>
+
+#include "facezip/printable.hpp"
 
 namespace facezip::cli {
 namespace {
@@ -11,6 +15,14 @@ namespace {
 constexpr auto kRedrawInterval = std::chrono::milliseconds(100);
 
 }  // namespace
+
+void printText(const std::string& text) {
+  if (std::fputs(printableLines(text).c_str(), stdout) == EOF) {
+    throw std::system_error(errno, std::generic_category(), "standard output");
+  }
+}
+
+void printError(const std::string& text) { std::fputs(printableLines(text).c_str(), stderr); }
 
 TerminalProgress::TerminalProgress(bool quiet) : quiet_(quiet), terminal_(!quiet && ::isatty(STDERR_FILENO) == 1) {}
 
@@ -46,7 +58,7 @@ void TerminalProgress::busy(std::string_view what) {
 
 void TerminalProgress::showLine(const std::string& text) {
   clearLine();
-  std::fputs(fmt::format("{} ...", text).c_str(), stderr);
+  std::fputs(fmt::format("{} ...", printable(text)).c_str(), stderr);
   std::fflush(stderr);
   line_shown_ = true;
 }
@@ -54,8 +66,7 @@ void TerminalProgress::showLine(const std::string& text) {
 void TerminalProgress::note(std::string_view message) {
   if (quiet_) return;
   clearLine();
-  // Not fmt::print(), which throws: a job of hours must not end because nobody can read a note.
-  std::fputs(fmt::format("facezip: {}\n", message).c_str(), stderr);
+  printError(fmt::format("facezip: {}\n", printable(message)));
 }
 
 }  // namespace facezip::cli

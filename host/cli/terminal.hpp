@@ -1,13 +1,28 @@
 // terminal.hpp - what the command says while it works: progress on a terminal, notes on standard error.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "facezip/progress.hpp"
 
 namespace facezip::cli {
+
+/// Writes to standard output; names of strangers in it do nothing to a terminal. Throws std::system_error where it
+/// cannot be written.
+void printText(const std::string& text);
+template <typename... Arguments>
+void say(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+  printText(fmt::format(format, std::forward<Arguments>(arguments)...));
+}
+
+/// Writes to standard error, likewise, and says nothing where that is closed: a job of hours must not end because
+/// nobody can read a note.
+void printError(const std::string& text);
 
 /// Shows the stage and its share done on one line of standard error when that is a terminal; in a pipe only notes
 /// appear.

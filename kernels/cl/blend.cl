@@ -21,7 +21,7 @@
 //
 //
 // NDRange   global {tiles * 16 / LANES}, rounded up to the local size; a work-item has LANES columns of one tile
-// Buffers   textures  in   [tile]: neutral [row 8][channel][16] SAMPLE, then codes [row 8] of planes [channel][C]:
+// Buffers   textures  in   [tile]: neutral [row 8][channel][16] NEUTRAL, then codes [row 8] of planes [channel][C]:
 //                          QUAD_PLANES of them as [plane / 4][quad 4][plane % 4][4], the others as [16] CODE. Tiles are
 //                          row-major and whole cache lines, so that 64 bytes of quads are one line
 //           weights   in   [cell / 16][C][16]         float  weight_blend.cl's output
@@ -33,9 +33,10 @@
 //           SCALE           s, texels to a cell (8)
 //           LANES           16 on CPUs, 1 on GPUs (16)
 //           SAMPLE_TYPE     0 uchar, 1 ushort, 2 float (0)
+//           NEUTRAL_TYPE    of the neutral; that of a frame, or 1 beside frames of 8 bits (SAMPLE_TYPE)
 //           CODE_BITS       8 or 16 (8)
 //           CLANG_BUILTINS  1: the compiler is clang (PoCL), which knows prefetches, and shuffles of 64 bytes (0)
-//           QUAD_PLANES     0, or with CLANG_BUILTINS, LANES 16, 8-bit samples and codes a multiple of 4 (0)
+//           QUAD_PLANES     0, or with CLANG_BUILTINS, LANES 16, 8-bit samples, neutral and codes a multiple of 4 (0)
 //           VALUES          0: FRAME is SAMPLE; 1: FRAME is float, T in 1/255 of full scale, before rounding (0)
 // Rounding  integers: half up, clamped to the type; floats: neither, and I_0 is copied where the sum is 0;
 //           values: neither, exact where the sum is 0 in 8 bits
@@ -53,6 +54,9 @@
 #endif
 #ifndef SAMPLE_TYPE
 #define SAMPLE_TYPE 0
+#endif
+#ifndef NEUTRAL_TYPE
+#define NEUTRAL_TYPE SAMPLE_TYPE
 #endif
 #ifndef VALUES
 #define VALUES 0
@@ -107,9 +111,18 @@ typedef union {
 #define SAMPLE float
 #define UNIT_255 255.0f
 #endif
-typedef VECTOR(SAMPLE) samples;
 
-#define NEUTRAL_ROW_BYTES (TILE_WIDTH * CHANNELS * sizeof(SAMPLE))
+// What blocks decode to lies between the samples of 8 bits.
+#if NEUTRAL_TYPE == SAMPLE_TYPE
+#define NEUTRAL SAMPLE
+#define NEUTRAL_STEP 1.0f
+#else
+#define NEUTRAL ushort
+#define NEUTRAL_STEP (1.0f / 257.0f)
+#endif
+typedef VECTOR(NEUTRAL) neutrals;
+
+#define NEUTRAL_ROW_BYTES (TILE_WIDTH * CHANNELS * sizeof(NEUTRAL))
 #define CODE_ROW_BYTES (TILE_WIDTH * PLANES * sizeof(CODE))
 #define TILE_BYTES (TILE_ROWS * (NEUTRAL_ROW_BYTES + CODE_ROW_BYTES))
 #define LINE_BYTES 64  // what a prefetch brings
@@ -341,11 +354,11 @@ kernel void blend(global const uchar* restrict textures, global const float* res
 #endif
     floats code[PLANES];
     load_codes(texels + TILE_ROWS * NEUTRAL_ROW_BYTES + row * CODE_ROW_BYTES, lane, code);
-    global const SAMPLE* neutrals = (global const SAMPLE*)(texels + row * NEUTRAL_ROW_BYTES) + lane;
+    global const NEUTRAL* stored = (global const NEUTRAL*)(texels + row * NEUTRAL_ROW_BYTES) + lane;
     results value[CHANNELS];
 #pragma unroll
     for (int c = 0; c < CHANNELS; ++c) {
-      const floats neutral = TO_FLOATS(*(global const samples*)(neutrals + 16 * c));
+      const floats neutral = TO_FLOATS(*(global const neutrals*)(stored + 16 * c)) * NEUTRAL_STEP;
       floats sum = START(neutral);
 #pragma unroll
       for (int i = 0; i < DIFFERENCES; ++i) {

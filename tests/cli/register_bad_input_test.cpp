@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "exit_codes.hpp"
-#include "io/staged_directory.hpp"
+#include "io/write_file.hpp"
 #include "run_command.hpp"
 #include "scan_set.hpp"
 #include "temporary_directory.hpp"

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "exit_codes.hpp"
+#include "facezip/printable.hpp"
 #include "file_contents.hpp"
 #include "io/staged_directory.hpp"
 #include "rig_capture.hpp"
@@ -123,7 +124,7 @@ TEST_F(RigBadInput, ShapesWhoseNamesAPackageCannotHold) {
        {std::string("bump,B"), std::string("bump\tB"), std::string(201, 'b'), std::string("b\xff")}) {
     const fs::path renamed = shapes() / (name + ".obj");
     fs::rename(shape, renamed);
-    expectFailure(cli::kExitInput, {renamed.string() + ": shape: expected a name ", "rename the file"});
+    expectFailure(cli::kExitInput, {printable(renamed.string()) + ": shape: expected a name ", "rename the file"});
     fs::rename(renamed, shape);
   }
   // A captured expression gives way to the shape of its name, and may get too long by that.

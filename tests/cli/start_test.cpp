@@ -48,6 +48,13 @@ TEST_F(Start, OpenImageIoIsLoadedForOtherFilesThanPng) {
 
 TEST_F(Start, CapturesOfPngNeedNoOpenImageIo) {
   test::writeSmallCapture(folder_ / "capture", {.expressions = 5});
+  // Nor do files that are no images need it to be told so.
+  for (const char* folder : {"expressions", "notes", "albedo"}) {
+    fs::create_directories(folder_ / "capture" / folder);
+    for (const char* name : {"e00.obj", "read.me", "a.mtl", "noextension", "face.fbx"}) {
+      fs::copy_file(folder_ / "capture/neutral.obj", folder_ / "capture" / folder / name);
+    }
+  }
   const test::CommandResult result =
       runFacezip("compress " + quoted(folder_ / "capture") + " --output " + quoted(folder_ / "compressed") +
                      " --unit m --mask-radius 5cm --restarts 3 --cluster-restarts 3",

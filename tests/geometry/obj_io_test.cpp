@@ -47,6 +47,7 @@ TEST_F(ObjFile, PolygonsBecomeFansWhateverTheirDiagonals) {
   Eigen::MatrixX3i expected(6, 3);
   expected << 0, 1, 2, 0, 2, 3, 0, 1, 2, 0, 2, 3, 0, 3, 4, 2, 1, 0;
   EXPECT_EQ(mesh.triangles, expected);
+  EXPECT_EQ(mesh.polygons, (std::vector<int>{0, 0, 1, 1, 1, 2}));
   EXPECT_EQ(mesh.uvs.rows(), 0);
   EXPECT_EQ(mesh.uv_triangles.rows(), 0);
 }
@@ -129,9 +130,9 @@ TEST_F(ObjFile, MissingFileAndFolderAreRefused) {
 
 TEST_F(ObjFile, FilesOfAFolderByNameTheExtensionInAnyCase) {
   for (const char* name : {"b.OBJ", "a-2.obj", "a.Obj", ".b.obj", "a.png", "obj"}) std::ofstream(directory_ / name);
-  std::filesystem::create_directory(directory_ / "folder.obj");
-  EXPECT_THAT(objFiles(directory_.path()),
-              testing::ElementsAre(directory_ / "a-2.obj", directory_ / "a.Obj", directory_ / "b.OBJ"));
+  std::filesystem::create_directory(directory_ / "folder.obj");  // an error when it is read
+  EXPECT_THAT(objFiles(directory_.path()), testing::ElementsAre(directory_ / "a-2.obj", directory_ / "a.Obj",
+                                                                directory_ / "b.OBJ", directory_ / "folder.obj"));
   EXPECT_THROW(objFiles(directory_ / "none"), InputError);
   std::ofstream(directory_ / "b.obj");
   EXPECT_THROW(objFiles(directory_.path()), InputError);
@@ -157,6 +158,32 @@ TEST_F(ObjFile, IndicesOutOfRangeAreRefusedByLine) {
   }
   EXPECT_THAT(refusal(kSquare + kSquareUvs + "f 1/1 2/2 3/5\n"), AllOf(HasSubstr("line 9"), HasSubstr("texture")));
   EXPECT_THAT(refusal(kSquare + "f 1/1 2/2 3/3\n"), HasSubstr("line 5"));
+}
+
+TEST_F(ObjFile, IndicesAreReadWholeOrRefused) {
+  for (const char* bad : {"4294967297 2 3", "1 2 18446744073709551619", "1 2 -4294967295", "1.7/1.9 2/2 3/3",
+                          "1x/1y 2/2 3/3", "1/1x 2/2 3/3", "1/4294967297 2/2 3/3", "1/1/x 2/2/1 3/3/1",
+                          "1/1/1/1 2/2/1 3/3/1", "/1 2/2 3/3", "1e0 2 3", "0x1 2 3", "1/0 2/2 3/3"}) {
+    EXPECT_THAT(refusal(kSquare + kSquareUvs + "vn 0 0 1\nf " + bad + "\n"), HasSubstr("line 10")) << bad;
+  }
+  // An index back may not reach beyond what stands before the line.
+  EXPECT_THAT(refusal("v 0 0 0\nv 1 0 0\nf -1 -2 -3\nv 0 1 0\n"), HasSubstr("line 3"));
+}
+
+TEST_F(ObjFile, WeightsAndColoursBehindCoordinatesAreNumbersToo) {
+  EXPECT_EQ(read("v 0 0 0 1\nv 1 0 0 0.5 0.25 1e-3\nv 0 1 0\nvt 0 0 0\nf 1/1 2/1 3/1\n").positions.rows(), 3);
+  EXPECT_THAT(refusal("v 0 0 0 x\nf 1 1 1\n"), HasSubstr("line 1"));
+  EXPECT_THAT(refusal(kSquare + "vt 0 0 x\nf 1 2 3\n"), HasSubstr("line 5"));
+}
+
+TEST_F(ObjFile, CommentsMayStandBehindNumbers) {
+  const TriangleMesh mesh = read(
+      "v 0 0 0 # first\nv 1 0 0# second\nv 1 1 0 # a path C:\\\nv 0 1 0\nvt 0 0 # corner\n"
+      "g part#1\nf 1/1 2/1 3/1 # quad 4/1\n  f 1/1 3/1 4/1\t#\n");
+  Eigen::MatrixX3i expected(2, 3);
+  expected << 0, 1, 2, 0, 2, 3;
+  EXPECT_EQ(mesh.positions.rows(), 4);
+  EXPECT_EQ(mesh.triangles, expected);
 }
 
 TEST_F(ObjFile, FacesOfTooFewOrTooManyCornersAreRefused) {

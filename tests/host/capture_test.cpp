@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "facezip/printable.hpp"
 #include "io/staged_directory.hpp"
 #include "small_capture.hpp"
 #include "temporary_directory.hpp"
@@ -102,7 +103,7 @@ TEST(Capture, MeshesThatMatchNoExpressionAreNoted) {
     openCapture(folder / "c", {}, &notes);
     return notes.all;
   };
-  EXPECT_THAT(notesWith({}), testing::IsEmpty());
+  EXPECT_THAT(notesWith({}), ElementsAre(HasSubstr("no meshes of expressions: textures will change")));
   EXPECT_THAT(notesWith({"e00.obj", "e01.obj", "e02.obj", "neutral.obj", "notes.txt"}), testing::IsEmpty());
   EXPECT_THAT(notesWith({"e00.obj", "e01.obj"}), ElementsAre(HasSubstr("expressions: no mesh for e02 (")));
   EXPECT_THAT(notesWith({"E00.obj", "e01.obj", "e02.obj"}),
@@ -110,6 +111,63 @@ TEST(Capture, MeshesThatMatchNoExpressionAreNoted) {
   EXPECT_THAT(notesWith({"a0.obj", "a1.obj", "a2.obj", "a3.obj", "a4.obj", "a5.obj", "a6.obj", "a7.obj", "a8.obj",
                          "a9.obj", "e00.obj", "e01.obj", "e02.obj"}),
               ElementsAre(HasSubstr("a6.obj, a7.obj and 2 more match no expression (")));
+}
+
+TEST(Capture, MeshesInAnotherPlaceAreFoundOrNamed) {
+  const test::TemporaryDirectory folder;
+  const fs::path c = folder / "c";
+  test::writeSmallCapture(c, {.expressions = 2, .width = 8, .height = 8});
+  const auto put = [&](const fs::path& file) {
+    fs::create_directories((c / file).parent_path());
+    fs::copy_file(c / "neutral.obj", c / file);
+  };
+  Notes notes;
+  const auto open = [&] {
+    notes.all.clear();
+    return openCapture(c, {}, &notes).expression_meshes;
+  };
+  for (const fs::path place : {"Expressions", "meshes", ""}) {
+    put(place / "e00.obj");
+    put(place / "other.obj");
+    EXPECT_THAT(open(), ElementsAre(c / place / "e00.obj", fs::path())) << place;
+    ASSERT_FALSE(notes.all.empty());
+    EXPECT_THAT(notes.all.front(), testing::AllOf(HasSubstr((place.empty() ? c : c / place).string() + ": taken for")));
+    EXPECT_THAT(notes.all.back(), HasSubstr("no mesh for e01"));
+    fs::remove(c / place / "other.obj");
+    if (place.empty())
+      fs::remove(c / "e00.obj");
+    else
+      fs::rename(c / place, folder / place);
+  }
+  // expressions/ goes first, and several others are a question.
+  fs::rename(folder / "meshes", c / "meshes");
+  fs::rename(folder / "Expressions", c / "more");
+  EXPECT_THAT(open(), ElementsAre(fs::path(), fs::path()));
+  EXPECT_THAT(notes.all, ElementsAre(HasSubstr("meshes/ and more/ hold some, and none is taken; meshes belong in")));
+  put("expressions/e01.obj");
+  EXPECT_THAT(open(), ElementsAre(fs::path(), c / "expressions/e01.obj"));
+  // A template has a neutral of its own.
+  fs::remove_all(c / "expressions");
+  fs::remove_all(c / "more");
+  put("meshes/neutral.obj");
+  EXPECT_THAT(open(), ElementsAre(fs::path(), fs::path()));
+  EXPECT_THAT(notes.all, ElementsAre(HasSubstr("meshes/ holds OBJ files that are not taken; meshes belong in")));
+  // As FaceScape calls them, whatever else lies there.
+  put("models_reg/2_smile.obj");
+  io::writeTextFile(c / "capture.json", R"({"expression_meshes": {"e00": "models_reg/2_smile.obj"}})");
+  EXPECT_THAT(open(), ElementsAre(c / "models_reg/2_smile.obj", fs::path()));
+  io::writeTextFile(c / "capture.json", R"({"expression_meshes": {"e0O": "models_reg/2_smile.obj"}})");
+  EXPECT_THAT(failure(c), testing::AllOf(HasSubstr("expression_meshes"), HasSubstr("e0O")));
+  io::writeTextFile(c / "capture.json", R"({"expression_meshes": {"e00": 3}})");
+  EXPECT_THAT(failure(c), HasSubstr("expression_meshes.e00: expected a string"));
+}
+
+TEST(Capture, HasTheNameOfItsDirectoryHoweverThatIsWritten) {
+  const test::TemporaryDirectory folder;
+  test::writeSmallCapture(folder / "bob", {.expressions = 1, .width = 8, .height = 8});
+  for (const char* path : {"bob", "bob/", "bob//", "bob/.", "bob/albedo/.."}) {
+    EXPECT_EQ(openCapture(folder / path).name, "bob") << path;
+  }
 }
 
 TEST(Capture, FoldersThatCannotBeReadAreRefused) {
@@ -224,12 +282,12 @@ TEST(Capture, RefusesFilesWhoseNamesAPackageCannotHold) {
   for (const std::string& name :
        {std::string("a..b"), std::string(201, 'a'), std::string("a\xff"), std::string("a\t")}) {
     fs::rename(capture / "normal", capture / name);
-    EXPECT_THAT(failure(capture), HasSubstr((capture / name).string() + ": map: expected a name "));
+    EXPECT_THAT(failure(capture), HasSubstr(printable((capture / name).string()) + ": map: expected a name "));
     EXPECT_EQ(openCapture(capture, {"albedo"}).maps.size(), 1u) << "what is not taken does not matter";
     fs::rename(capture / name, capture / "normal");
     for (const char* map : {"albedo", "normal"}) fs::rename(capture / map / "e01.png", capture / map / (name + ".png"));
     EXPECT_THAT(failure(capture),
-                HasSubstr((capture / "albedo" / (name + ".png")).string() + ": expression: expected"));
+                HasSubstr(printable((capture / "albedo" / (name + ".png")).string()) + ": expression: expected"));
     for (const char* map : {"albedo", "normal"}) fs::rename(capture / map / (name + ".png"), capture / map / "e01.png");
   }
   fs::rename(capture, folder / "c\xff");

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "facezip/geometry/surface_sampling.hpp"
-#include "raster/weight_grid.hpp"
+#include "raster/grid_masks.hpp"
 #include "small_capture.hpp"
 
 namespace facezip {
@@ -28,11 +28,11 @@ TEST(TexelMasks, SumToOneOnEveryMaskedTexelAndNowhereElse) {
   const MaskedPatch patch;
   const raster::UvRaster raster(patch.mesh, patch.triangles, 93, 61, 7);
   const auto samples = raster.rows(0, 61);
-  const compress::TileMasks tiles = patch.texels.tiles(raster, 0, 61, kWithGutter);
+  const raster::TileMasks tiles = patch.texels.tiles(raster, 0, 61, kWithGutter);
   std::vector<float> sums(static_cast<std::size_t>(96) * 64, 0.0f);
   for (std::size_t t = 0; t < tiles.tiles.size(); ++t) {
     for (int e = tiles.mask_begin[t]; e < tiles.mask_begin[t + 1]; ++e) {
-      for (int p = 0; p < compress::kTileTexels; ++p) {
+      for (int p = 0; p < raster::kTileTexels; ++p) {
         const int x = tiles.tiles[t].x * 16 + p % 16;
         const int y = tiles.tiles[t].y * 16 + p / 16;
         sums[static_cast<std::size_t>(y * 96 + x)] +=
@@ -54,7 +54,7 @@ TEST(TexelMasks, CountOnlyCoveredTexels) {
   const auto samples = raster.rows(0, 61);
   const auto covered = std::count_if(samples.begin(), samples.end(),
                                      [](const auto& s) { return s.kind == raster::TexelSample::Kind::kCovered; });
-  const auto count = [](const compress::TileMasks& tiles) {
+  const auto count = [](const raster::TileMasks& tiles) {
     return std::count(tiles.texel_weights.begin(), tiles.texel_weights.end(), 1.0f);
   };
   EXPECT_EQ(count(patch.texels.tiles(raster, 0, 61, kWithGutter)), covered);
@@ -83,10 +83,10 @@ TEST(TexelMasks, ActiveTilesHoldTheClassesOfTheirRows) {
   const MaskedPatch patch;
   const raster::UvRaster raster(patch.mesh, patch.triangles, 93, 61, 7);
   const auto samples = raster.rows(32, 61);
-  const compress::TileMasks tiles = raster::activeTiles(raster::TexelClasses(raster), 32, 61);
+  const raster::TileMasks tiles = raster::activeTiles(raster::TexelClasses(raster), 32, 61);
   std::vector<float> active(samples.size(), 0.0f), covered(samples.size(), 0.0f);
   for (std::size_t t = 0; t < tiles.tiles.size(); ++t) {
-    for (int p = 0; p < compress::kTileTexels; ++p) {
+    for (int p = 0; p < raster::kTileTexels; ++p) {
       const int x = tiles.tiles[t].x * 16 + p % 16, y = tiles.tiles[t].y * 16 + p / 16;
       const auto value = static_cast<std::size_t>(p) + t * 256;
       if (x >= 93 || y >= 29) {
@@ -107,12 +107,12 @@ TEST(TexelMasks, OverlapsAreThePairsThatShareATexel) {
   const MaskedPatch patch;
   // So fine that every triangle has texels inside.
   const raster::UvRaster raster(patch.mesh, patch.triangles, 256, 256, 0);
-  const compress::TileMasks tiles = patch.texels.tiles(raster, 0, 256, raster::TexelMasks::Texels::kCovered);
+  const raster::TileMasks tiles = patch.texels.tiles(raster, 0, 256, raster::TexelMasks::Texels::kCovered);
   std::set<std::pair<int, int>> expected;
   for (std::size_t t = 0; t < tiles.tiles.size(); ++t) {
     for (int a = tiles.mask_begin[t]; a < tiles.mask_begin[t + 1]; ++a) {
       for (int b = a + 1; b < tiles.mask_begin[t + 1]; ++b) {
-        for (int p = 0; p < compress::kTileTexels; ++p) {
+        for (int p = 0; p < raster::kTileTexels; ++p) {
           const auto weight = [&](int e) {
             return tiles.mask_weights[static_cast<std::size_t>(e) * 256 + static_cast<std::size_t>(p)];
           };
@@ -134,10 +134,10 @@ TEST(WeightGrid, CellsSumToOneEverywhere) {
   const MaskedPatch patch;
   const raster::UvRaster raster(patch.mesh, patch.triangles, 93, 61, 7);
   for (const int scale : {1, 4, 8}) {
-    const raster::WeightGrid grid = raster::makeWeightGrid(patch.texels, raster, scale);
-    EXPECT_EQ(grid.width, (93 + scale - 1) / scale);
-    EXPECT_EQ(grid.height, (61 + scale - 1) / scale);
-    ASSERT_EQ(grid.cells.cells(), static_cast<std::size_t>(grid.width * grid.height));
+    const raster::GridMasks grid = raster::makeGridMasks(patch.texels, raster, scale);
+    EXPECT_EQ(grid.columns, (93 + scale - 1) / scale);
+    EXPECT_EQ(grid.rows, (61 + scale - 1) / scale);
+    ASSERT_EQ(grid.cells.cells(), static_cast<std::size_t>(grid.columns * grid.rows));
     for (std::size_t c = 0; c < grid.cells.cells(); ++c) {
       float sum = 0.0f;
       for (int e = grid.cells.cell_begin[c]; e < grid.cells.cell_begin[c + 1]; ++e)

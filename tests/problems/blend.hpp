@@ -21,12 +21,14 @@ struct BlendSizes {
   int weight_scale = 8;
   image::SampleType type = image::SampleType::kUint8;
   int difference_bits = 8;
+  bool wide_neutral = false;  ///< of 16 bits, beside frames of 8
 };
 
 inline void PrintTo(const BlendSizes& sizes, std::ostream* out) {
   *out << sizes.width << "x" << sizes.height << " channels " << sizes.channels << " C " << sizes.differences << " s "
        << sizes.weight_scale << " " << image::sampleTypeName(sizes.type) << " differences in " << sizes.difference_bits
-       << " bits";
+       << " bits"
+       << (sizes.wide_neutral ? ", neutral in 16" : "");
 }
 
 /// Must move: the neutral and C differences in, the frame out.
@@ -48,11 +50,12 @@ struct BlendProblem {
   double fullScale() const {
     return sizes.type == image::SampleType::kUint8 ? 255 : sizes.type == image::SampleType::kUint16 ? 65535 : 1;
   }
+  image::SampleType neutralType() const { return sizes.wide_neutral ? image::SampleType::kUint16 : sizes.type; }
   std::size_t samples() const { return toSize(sizes.height, sizes.width, sizes.channels); }
   blend::TextureShape shape() const {
     return {
-        sizes.width, sizes.channels, sizes.differences, sizes.difference_bits, sizes.type, sizes.weight_scale, scale,
-        zero};
+        sizes.width,  sizes.channels,     sizes.differences, sizes.difference_bits, sizes.type,
+        neutralType(), sizes.weight_scale, scale,             zero};
   }
 
   /// As weight_blend leaves them, times `factor`.
@@ -80,7 +83,7 @@ struct BlendProblem {
     for (const std::vector<std::byte>& codes : difference_codes) {
       differences.push_back(std::span(codes).subspan(first * code_bytes, count * code_bytes));
     }
-    const std::size_t bytes = image::sampleBytes(sizes.type);
+    const std::size_t bytes = image::sampleBytes(neutralType());
     rows.load(begin, end - begin, std::span(neutral).subspan(first * bytes, count * bytes), differences);
     return rows;
   }
@@ -108,7 +111,7 @@ struct BlendProblem {
     reference::Textures textures{
         sizes.width, sizes.height, sizes.channels, sizes.differences, sizes.weight_scale, fullScale(),
         {},          {},           code_scale,     code_offset};
-    for (std::size_t s = 0; s < samples(); ++s) textures.neutral.push_back(sampleAt(neutral, s));
+    for (std::size_t s = 0; s < samples(); ++s) textures.neutral.push_back(neutralAt(s));
     for (const std::vector<std::byte>& stored : difference_codes) {
       std::vector<double>& numbers = textures.codes.emplace_back();
       for (std::size_t s = 0; s < samples(); ++s) {
@@ -130,6 +133,14 @@ struct BlendProblem {
     float value;
     std::memcpy(&value, frame.data() + 4 * sample, 4);
     return static_cast<double>(value);
+  }
+
+  /// In samples of a frame.
+  double neutralAt(std::size_t sample) const {
+    if (!sizes.wide_neutral) return sampleAt(neutral, sample);
+    std::uint16_t value;
+    std::memcpy(&value, neutral.data() + 2 * sample, 2);
+    return value / 257.0;
   }
 
   double bytes() const {
@@ -163,7 +174,7 @@ struct BlendProblem {
   }
 
   void makeNeutral(Hashed& hashed) {
-    neutral.resize(samples() * image::sampleBytes(sizes.type));
+    neutral.resize(samples() * image::sampleBytes(neutralType()));
     hashed.fill(neutral);
     if (sizes.type == image::SampleType::kFloat32) {
       for (std::size_t s = 0; s < samples(); ++s) {

@@ -8,7 +8,8 @@
 
 namespace facezip {
 
-/// Base of every failure that facezip reports. what() is one line that a user can act on.
+/// Base of every failure that facezip reports. what() is one line that a user can act on; what files and options bring
+/// into those of InputError and OutputError is made printable.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -39,9 +40,14 @@ class OutputError : public Error {
  public:
   OutputError(const std::filesystem::path& file, const std::string& reason, const std::string& cure = "");
   const std::filesystem::path& file() const noexcept { return file_; }
+  const std::string& reason() const noexcept { return reason_; }
+  /// The same error of another file: for files that the user did not name.
+  OutputError of(const std::filesystem::path& file) const { return {file, reason_, cure_}; }
 
  private:
   std::filesystem::path file_;
+  std::string reason_;
+  std::string cure_;
 };
 
 /// A linear system could not be solved to the promised residual.

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "facezip/block_format.hpp"
 #include "facezip/capture.hpp"
 #include "facezip/device.hpp"
 #include "facezip/geometry/length.hpp"
@@ -25,6 +26,11 @@ struct CompressOptions {
   /// package within it. What they cost is estimated while the textures are read the first time.
   std::optional<double> target_rmse;
   std::optional<std::uint64_t> budget_bytes;
+  /// Block format of the textures of maps of 8 bits, which are fitted to what their blocks decode to; none: images. BC1
+  /// and BC7 become BC4 and BC5 in maps of one and two channels.
+  std::optional<BlockFormat> texture_format;
+  /// Of the difference textures, where it is to be another.
+  std::optional<BlockFormat> difference_format;
   /// Weight maps that each set will have beside those of the expressions: a budget counts them too.
   int further_weight_maps = 0;
   /// A set of weights for every map, instead of one that all share.
@@ -108,8 +114,12 @@ struct CompressReport {
 
 /// Compresses `capture` into the directory `package`, which appears whole or not at all; an earlier package there is
 /// replaced. The same capture, options and device give the same bytes.
-/// Throws InputError (the capture, an option), DeviceError, OutputError, SolverError, Cancelled.
+/// Throws InputError (the capture, an option), DeviceError, OutputError (also where `package` is an input, lies in one
+/// or holds one), SolverError, Cancelled.
 CompressReport compressCapture(const Capture& capture, const std::filesystem::path& package,
                                const CompressOptions& options, const Device& device, Progress& progress);
+
+/// What compressCapture() reads.
+ProtectedPaths inputsOf(const Capture& capture, const CompressOptions& options);
 
 }  // namespace facezip

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "facezip/block_format.hpp"
 #include "facezip/capture.hpp"
 #include "facezip/device.hpp"
 #include "facezip/method.hpp"
@@ -42,6 +43,8 @@ struct PictureOptions {
 struct EvaluateOptions {
   std::set<Method> methods = {Method::kNoPermutation, Method::kPaper};
   std::set<Baseline> baselines = {Baseline::kPca4, Baseline::kPca8, Baseline::kLimit};
+  /// Block formats in which every captured texture is coded for itself: what a studio does without facezip.
+  std::set<BlockFormat> every_texture = {};
   /// Also every method at C = 1, 2, 3, 4: up to 16 compressions more, one after the other.
   bool ablation = false;
   /// Numbers of masks to compress with, by the package's method and by the paper's: two compressions each.
@@ -115,7 +118,8 @@ struct MaskSweepPoint {
 };
 
 /// Keys "by method": "package" (as decoded from disk), the names of methods and baselines (a package's own method is an
-/// entry too, equal to "package", as is "weights-per-map" where its maps do not share weights); of a rig's package also
+/// entry too, equal to "package", as is "weights-per-map" where its maps do not share weights);
+/// "every-bc7" and the like: every texture in blocks of that format. Of a rig's package also
 /// "rig": each expression as the rig's shapes blend it with the weights that it was found to have.
 struct Evaluation {
   struct Map {

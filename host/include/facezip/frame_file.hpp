@@ -16,9 +16,15 @@ namespace facezip {
 
 /// Writes one blended frame of `map`; the extension decides the format. The file appears whole or not at all;
 /// directories above it are made.
-/// frame  map.frameBytes() bytes, as Blender::blend() gives them
+/// frame     map.frameBytes() bytes, as Blender::blend() gives them
+/// progress  gets a note of what a killed run left there; may be null
 /// Throws InputError for a format that is not known or could not hold the frame, OutputError.
-void writeFrame(const std::filesystem::path& file, const PackageMap& map, std::span<const std::byte> frame);
+void writeFrame(const std::filesystem::path& file, const PackageMap& map, std::span<const std::byte> frame,
+                Progress* progress = nullptr);
+
+/// Writes a picture, 8-bit RGB, likewise.
+/// samples  height x width x 3, from the upper left corner
+void writePicture(const std::filesystem::path& file, int width, int height, std::span<const std::byte> samples);
 
 /// Names of frame files from a pattern: "%d" or "%04d" stands for the number of the frame, "{map}" for the map's name.
 class FramePattern {
@@ -29,8 +35,9 @@ class FramePattern {
   FramePattern(std::string pattern, bool numbered, std::size_t maps);
   std::filesystem::path file(int frame, const std::string& map) const;
   /// Throws, before any work, InputError where frames of a map would lose something in that format, OutputError where
-  /// they would lie in the package.
-  void requireFits(const Package& package) const;
+  /// one of frames 0 to frames - 1 would be an input or lie in one, or among the textures of a capture or package.
+  /// inputs  beside the package
+  void requireFits(const Package& package, int frames = 1, ProtectedPaths inputs = {}) const;
 
  private:
   void findNumber();

@@ -6,6 +6,7 @@
 
 #include "facezip/evaluate.hpp"
 #include "facezip/package.hpp"
+#include "facezip/progress.hpp"
 
 namespace facezip {
 
@@ -19,8 +20,9 @@ std::string readCompressReport(const std::filesystem::path& file);
 
 /// Writes a page that holds all it shows: no network, no files beside it. It appears whole or not at all.
 /// evaluation  with pictures (EvaluateOptions::pictures)
+/// progress  may be null
 /// Throws InputError for damaged images of the package, OutputError.
 void writeHtmlReport(const std::filesystem::path& file, const Package& package, const Evaluation& evaluation,
-                     const HtmlReportOptions& options);
+                     const HtmlReportOptions& options, Progress* progress = nullptr);
 
 }  // namespace facezip

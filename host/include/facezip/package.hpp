@@ -9,7 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "facezip/block_format.hpp"
 #include "facezip/error.hpp"
+#include "facezip/protected_paths.hpp"
 #include "facezip/sample_type.hpp"
 
 namespace facezip {
@@ -18,9 +20,11 @@ namespace io {
 class Folder;
 }
 
-/// One difference texture D_i of one map: an image of 8- or 16-bit codes that decode to D_i = scale * code + offset.
+/// One difference texture D_i of one map: an image of 8- or 16-bit codes that decode to D_i = scale * code + offset. Of
+/// one in blocks, a code is 255 times what a sampler returns; it may lie between whole numbers.
 struct PackageDifference {
-  std::string file;            ///< relative to the package
+  std::string file;                   ///< relative to the package
+  std::optional<BlockFormat> format;  ///< of the blocks of a KTX2 file; none: a PNG
   std::vector<double> scale;   ///< one per channel, >= 0, in units of 1/255 of full scale for each code
   std::vector<double> offset;  ///< one per channel, -scale times a whole code, in double: zero is exact
 };
@@ -37,6 +41,7 @@ struct PackageMap {
   int weight_set = 0;                           ///< which of Package::weightSets() this map is blended with
   double metric_weight = 1.0;                   ///< how much the map counted in the compression
   std::string neutral_file;                     ///< relative to the package
+  std::optional<BlockFormat> neutral_format;    ///< of the blocks of a KTX2 file; none: an image
   int difference_bits = 8;                      ///< of a code of the difference textures: 8 or 16
   std::vector<PackageDifference> differences;   ///< C, in the order of the weight channels
 
@@ -119,9 +124,9 @@ class Package {
   /// EXPERIMENTAL: how the package was made, a JSON object.
   const std::string& methodJson() const noexcept { return description_.method_json; }
 
-  /// Bytes of the decoded texels that a renderer keeps (FaceZip, Table 1): per map 1 + C textures (the neutral in its
-  /// own type, differences in their 8 or 16 bits), and of each set N weight maps of C bytes a cell without their
-  /// borders.
+  /// Bytes of the texels that a renderer keeps (FaceZip, Table 1): per map 1 + C textures (in blocks as they are; of
+  /// images the neutral in its own type, differences in their 8 or 16 bits), and of each set N weight maps of C bytes a
+  /// cell without their borders. Mip levels, a third more, are not counted.
   std::uint64_t bytesInMemory() const;
   /// Bytes of all files of the package.
   std::uint64_t bytesOnDisk() const noexcept { return bytes_on_disk_; }
@@ -138,6 +143,9 @@ class Package {
   PackageDescription description_;
   std::uint64_t bytes_on_disk_ = 0;
 };
+
+/// The package's directory.
+ProtectedPaths inputsOf(const Package& package);
 
 /// Opens a package and returns what `use(package)` does. Where another package takes its place before `use` has read
 /// all that it needs, which it then says by an InputError, the same with that one.

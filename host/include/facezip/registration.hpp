@@ -8,6 +8,7 @@
 
 #include "facezip/device.hpp"
 #include "facezip/progress.hpp"
+#include "facezip/protected_paths.hpp"
 
 namespace facezip {
 
@@ -43,6 +44,10 @@ struct RegistrationReport {
   int region_triangles = 0;
   std::vector<std::pair<std::string, double>> seconds;
 };
+
+/// What registerScans() reads: what is written may be none of it.
+ProtectedPaths inputsOf(const std::filesystem::path& scans, const std::filesystem::path& template_directory,
+                        const RegistrationOptions& options);
 
 /// Registers the scans of a directory to a template and writes them as a capture (docs/registration.md):
 /// neutral.obj, expressions/NAME.obj, albedo/NAME.png, confidence/NAME.png, face_region.txt, capture.json. The capture

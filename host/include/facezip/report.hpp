@@ -20,9 +20,13 @@ std::string toJson(const SolvedClip& clip);
 
 /// Throws OutputError if a report could not be written to `file`, as far as can be told: to be asked before the work
 /// that it is to tell of. Nothing for an empty name.
-void requireReportPlace(const std::filesystem::path& file);
+/// taken   what the command reads, and where it writes besides: a report may be none of it, nor lie in it
+/// option  that names the file
+void requireReportPlace(const std::filesystem::path& file, const ProtectedPaths& taken = {},
+                        const std::string& option = "--report");
 
 /// Writes a report so that a reader sees all of it or none; makes the directories above it. Throws OutputError.
-void writeReport(const std::filesystem::path& file, const std::string& json_text);
+/// progress  may be null
+void writeReport(const std::filesystem::path& file, const std::string& json_text, Progress* progress = nullptr);
 
 }  // namespace facezip

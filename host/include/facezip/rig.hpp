@@ -91,6 +91,10 @@ RigReport rigCapture(const Capture& capture, const std::filesystem::path& templa
                      const std::filesystem::path& package, const RigOptions& options, const Device& device,
                      Progress& progress);
 
+/// What rigCapture() reads.
+ProtectedPaths inputsOf(const Capture& capture, const std::filesystem::path& template_directory,
+                        const RigOptions& options);
+
 /// A rig as a package holds it.
 struct Rig {
   std::filesystem::path directory;
@@ -128,6 +132,7 @@ SolvedClip solveWeights(const std::filesystem::path& package, const std::vector<
                         const SolveWeightsOptions& options, Progress& progress);
 
 /// Writes a clip as `blend --animation` reads it: a header of names, a row of weights for each frame, numbered or not.
-void writeClip(const std::filesystem::path& file, const SolvedClip& clip);
+/// progress  may be null
+void writeClip(const std::filesystem::path& file, const SolvedClip& clip, Progress* progress = nullptr);
 
 }  // namespace facezip

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <fstream>
+#include <sstream>
 #include <string>
 
 #include "blend/names.hpp"
 #include "blend/number.hpp"
 #include "facezip/blend.hpp"
 #include "io/counts.hpp"
+#include "io/read_file.hpp"
 #include "package/package_json.hpp"
 
 namespace facezip {
@@ -89,12 +90,8 @@ void appendFrame(const std::string& line, std::size_t line_number, const std::fi
 }  // namespace
 
 AnimationClip readAnimation(const std::filesystem::path& file, const Package& package) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) {
-    throw InputError({file.string(), "", "a table of blendshape weights", "a folder", ""});
-  }
-  std::ifstream stream(file);
-  if (!stream) throw InputError({file.string(), "", "a table of blendshape weights", "no readable file", ""});
+  constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 30;
+  std::istringstream stream(io::readFile(file, "a table of blendshape weights", "", kMostBytes));
   AnimationClip clip;
   clip.expressions = static_cast<int>(package.expressions().size());
   std::vector<int> columns;

@@ -74,16 +74,16 @@ std::vector<float> encodingOf(const TextureShape& shape, int quad_planes) {
 
 std::string definesOf(const TextureShape& shape, int quad_planes, bool gpu, bool clang_builtins, FrameForm form) {
   return fmt::format(
-      "-D LANES={} -D CHANNELS={} -D DIFFERENCES={} -D SCALE={} -D SAMPLE_TYPE={} -D CODE_BITS={} -D QUAD_PLANES={} "
-      "-D VALUES={} -D CLANG_BUILTINS={}",
+      "-D LANES={} -D CHANNELS={} -D DIFFERENCES={} -D SCALE={} -D SAMPLE_TYPE={} -D NEUTRAL_TYPE={} -D CODE_BITS={} "
+      "-D QUAD_PLANES={} -D VALUES={} -D CLANG_BUILTINS={}",
       gpu ? 1 : kTileWidth, shape.channels, shape.differences, shape.weight_scale, static_cast<int>(shape.sample_type),
-      shape.difference_bits, quad_planes, form == FrameForm::kValues ? 1 : 0, clang_builtins ? 1 : 0);
+      static_cast<int>(shape.neutral_type), shape.difference_bits, quad_planes, form == FrameForm::kValues ? 1 : 0, clang_builtins ? 1 : 0);
 }
 
 }  // namespace
 
 std::size_t TextureShape::neutralTileRowBytes() const {
-  return toSize(channels) * image::sampleBytes(sample_type) * kTileWidth;
+  return toSize(channels) * image::sampleBytes(neutral_type) * kTileWidth;
 }
 
 std::size_t TextureShape::codeTileRowBytes() const { return toSize(channels, differences) * codeBytes() * kTileWidth; }
@@ -110,7 +110,8 @@ cl::Buffer TextureRows::allocateFrame(FrameForm form) const {
 }
 
 int TextureRows::quadPlanes() const {
-  const bool narrow = shape_.sample_type == image::SampleType::kUint8 && shape_.difference_bits == 8;
+  const bool narrow = shape_.sample_type == image::SampleType::kUint8 && shape_.neutral_type == shape_.sample_type &&
+                      shape_.difference_bits == 8;
   return clang_builtins_ && narrow ? shape_.channels * shape_.differences / 4 * 4 : 0;
 }
 
@@ -132,9 +133,9 @@ void TextureRows::setRows(int begin, int end) {
 void TextureRows::load(int first, int rows, std::span<const std::byte> neutral,
                        std::span<const std::span<const std::byte>> differences) {
   assert(first % kTileRows == 0 && begin_ <= first && first + rows <= end_);
-  assert(neutral.size() == toSize(rows) * shape_.rowBytes() && differences.size() == toSize(shape_.differences));
+  assert(neutral.size() == toSize(rows) * shape_.neutralRowBytes() && differences.size() == toSize(shape_.differences));
   const int tile_rows = (rows + kTileRows - 1) / kTileRows;
-  const std::size_t sample_bytes = image::sampleBytes(shape_.sample_type);
+  const std::size_t sample_bytes = image::sampleBytes(shape_.neutral_type);
   const std::size_t code_bytes = shape_.codeBytes();
   tiles_.resize(toSize(tile_rows) * shape_.tilesBytes());
   tbb::parallel_for(0, rows, [&](int row) {
@@ -142,7 +143,7 @@ void TextureRows::load(int first, int rows, std::span<const std::byte> neutral,
     std::byte* samples = tiles + toSize(row % kTileRows) * shape_.neutralTileRowBytes();
     std::byte* codes =
         tiles + kTileRows * shape_.neutralTileRowBytes() + toSize(row % kTileRows) * shape_.codeTileRowBytes();
-    const std::byte* neutral_row = neutral.data() + toSize(row) * shape_.rowBytes();
+    const std::byte* neutral_row = neutral.data() + toSize(row) * shape_.neutralRowBytes();
     for (int c = 0; c < shape_.channels; ++c) {
       splitRowOf(sample_bytes, shape_, neutral_row, c, neutralPlane(c), samples);
       for (int i = 0; i < shape_.differences; ++i) {

@@ -16,7 +16,7 @@ namespace facezip::blend {
 inline constexpr int kTileWidth = FACEZIP_TILE_SIDE;       ///< texels, kernels/cl/blend.cl
 inline constexpr int kTileRows = FACEZIP_BLEND_TILE_ROWS;  ///< texels
 
-/// What the kernel writes: samples of the neutral's type, or float32 in 1/255 of full scale, before rounding.
+/// What the kernel writes: samples of the frame's type, or float32 in 1/255 of full scale, before rounding.
 enum class FrameForm { kSamples, kValues };
 
 /// What a map's textures are, for the kernel.
@@ -25,14 +25,16 @@ struct TextureShape {
   int channels = 0;                                           ///< 1 to 4
   int differences = 0;                                        ///< C, 1 to 8
   int difference_bits = 8;                                    ///< of a code: 8 or 16
-  image::SampleType sample_type = image::SampleType::kUint8;  ///< of neutral and frame
+  image::SampleType sample_type = image::SampleType::kUint8;   ///< of a frame
+  image::SampleType neutral_type = image::SampleType::kUint8;  ///< of the neutral: that, or 16 bits for frames of 8
   int weight_scale = 0;                                       ///< s
   std::vector<float>
       scale;  ///< [C][channels], steps of a sample (8-bit 1, 16-bit 1/257 and float 255 in 1/255) per code
   std::vector<float> zero;  ///< [C][channels], the code that means 0
 
   int tilesAcross() const { return divideUp(width, kTileWidth); }
-  std::size_t rowBytes() const { return frameShape(1).rowBytes(); }  ///< of neutral and frame
+  std::size_t rowBytes() const { return frameShape(1).rowBytes(); }  ///< of a frame
+  std::size_t neutralRowBytes() const { return toSize(width, channels) * image::sampleBytes(neutral_type); }
   std::size_t codeBytes() const { return difference_bits == 16 ? 2 : 1; }
   std::size_t differenceRowBytes() const { return toSize(width, channels) * codeBytes(); }
   /// One texel row of one tile: 16 texels of the neutral, and of all differences. A tile has the rows of the one, then
@@ -60,7 +62,7 @@ class TextureRows {
   void setRows(int begin, int end);
 
   /// Puts rows [first, first + rows) into tiles; first a multiple of kTileRows, rows too or up to end().
-  /// neutral      rows x rowBytes()
+  /// neutral      rows x neutralRowBytes()
   /// differences  C spans of rows x differenceRowBytes()
   void load(int first, int rows, std::span<const std::byte> neutral,
             std::span<const std::span<const std::byte>> differences);

@@ -1,45 +1,65 @@
 #include "facezip/frame_file.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
+#include <set>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "blend/frame_writer.hpp"
 #include "image/image_file.hpp"
+#include "image/input_extensions.hpp"
 #include "image/output_formats.hpp"
-#include "io/staged_directory.hpp"
+#include "io/write_file.hpp"
 #include "package/package_files.hpp"
 
 namespace facezip {
 namespace fs = std::filesystem;
 
-void writeFrame(const fs::path& file, const PackageMap& map, std::span<const std::byte> frame) {
-  blend::writeFrameBy(file, map, [&](image::ImageWriter& writer) { writer.writeRows(frame, map.height); });
-}
+namespace {
 
-void blend::writeFrameBy(const fs::path& file, const PackageMap& map,
-                         const std::function<void(image::ImageWriter& writer)>& write) {
-  const image::ImageShape shape = package::neutralShape(map);
+void writeWhole(const fs::path& file, const image::ImageShape& shape, const std::string& colour_space,
+                Progress* progress, const std::function<void(image::ImageWriter& writer)>& write) {
   image::requireFormat(file, shape);
   io::createDirectories(fs::absolute(file).parent_path());
-  const fs::path target = io::fileToReplace(file);
-  if (target.empty()) throw OutputError(file, "something that is no file is in the way", "choose another --output");
-  // The extension stays last: it decides the format.
-  const fs::path partial = target.parent_path() / fmt::format(".partial-{}-{}", ::getpid(), target.filename().string());
-  std::error_code error;
+  io::StagedFile staged(file, progress);
   try {
-    image::ImageWriter writer(partial, shape, map.colour_space);
+    image::ImageWriter writer(staged.path(), shape, colour_space);
     write(writer);
     writer.close();
-    fs::rename(partial, target, error);
-    if (error) throw OutputError(file, error.message());
-  } catch (...) {
-    fs::remove(partial, error);
-    throw;
+  } catch (const OutputError& error) {
+    throw error.of(file);
   }
+  staged.commit();
+}
+
+/// What says that a folder holds the textures of a capture or package: its neutral, and beside the folder what describes
+/// it. Empty where nothing does.
+std::string signOfTextures(const fs::path& folder) {
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    if (entry.path().stem() != "neutral" || !image::hasImageExtension(entry.path())) continue;
+    for (const char* sign : {"capture.json", "neutral.obj", package::kDescriptionFile}) {
+      if (fs::exists(folder.parent_path() / sign, error)) return (folder.parent_path() / sign).string();
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
+void writeFrame(const fs::path& file, const PackageMap& map, std::span<const std::byte> frame, Progress* progress) {
+  blend::writeFrameBy(file, map, progress, [&](image::ImageWriter& writer) { writer.writeRows(frame, map.height); });
+}
+
+void blend::writeFrameBy(const fs::path& file, const PackageMap& map, Progress* progress,
+                         const std::function<void(image::ImageWriter& writer)>& write) {
+  writeWhole(file, package::neutralShape(map), map.colour_space, progress, write);
+}
+
+void writePicture(const fs::path& file, int width, int height, std::span<const std::byte> samples) {
+  writeWhole(file, {width, height, 3, SampleType::kUint8}, "", nullptr,
+             [&](image::ImageWriter& writer) { writer.writeRows(samples, height); });
 }
 
 FramePattern::FramePattern(std::string pattern, bool numbered, std::size_t maps) : pattern_(std::move(pattern)) {
@@ -78,11 +98,21 @@ fs::path FramePattern::file(int frame, const std::string& map) const {
   return path;
 }
 
-void FramePattern::requireFits(const Package& package) const {
+void FramePattern::requireFits(const Package& package, int frames, ProtectedPaths inputs) const {
+  inputs.add(inputsOf(package));
+  std::set<fs::path> folders;
   for (const PackageMap& map : package.maps()) {
-    const fs::path first = file(0, map.name);
-    image::requireFormat(first, package::neutralShape(map));
-    io::requireOutside(first, package.directory(), "the package itself");
+    image::requireFormat(file(0, map.name), package::neutralShape(map));
+    for (int frame = 0; frame < frames; ++frame) {
+      const fs::path output = file(frame, map.name);
+      inputs.requireApart(output);
+      const fs::path folder = fs::absolute(output).parent_path();
+      if (!folders.insert(folder).second) continue;
+      const std::string sign = signOfTextures(folder);
+      if (sign.empty()) continue;
+      throw OutputError(output, fmt::format("it would be taken for a texture of what {} describes", sign),
+                        "choose another --output");
+    }
   }
 }
 

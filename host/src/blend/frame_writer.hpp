@@ -5,12 +5,14 @@
 #include <functional>
 
 #include "facezip/package.hpp"
+#include "facezip/progress.hpp"
 #include "image/image_file.hpp"
 
 namespace facezip::blend {
 
 /// Writes a frame of `map` as writeFrame() does, by a function that writes all its rows. Throws what it throws.
-void writeFrameBy(const std::filesystem::path& file, const PackageMap& map,
+/// progress  may be null
+void writeFrameBy(const std::filesystem::path& file, const PackageMap& map, Progress* progress,
                   const std::function<void(image::ImageWriter& writer)>& write);
 
 }  // namespace facezip::blend

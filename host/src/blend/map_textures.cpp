@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "io/counts.hpp"
-#include "package/package_files.hpp"
+#include "package/package_textures.hpp"
 #include "package/weight_atlas.hpp"
 
 namespace facezip::blend {
@@ -27,16 +27,19 @@ TextureShape textureShape(const PackageMap& map, int differences) {
   shape.width = map.width;
   shape.channels = map.channels;
   shape.differences = differences;
-  shape.difference_bits = map.difference_bits;
+  shape.difference_bits = package::readBits(map);
   shape.sample_type = map.sample_type;
+  shape.neutral_type = package::neutralTexture(map).shape.type;
   shape.weight_scale = map.weight_scale;
   const double step = 1.0 / static_cast<double>(image::unit255(shape.sample_type));
+  // Blocks that decode to values between codes are read with 257 to a code.
+  const double read_codes = shape.difference_bits > map.difference_bits ? 257.0 : 1.0;
   for (const PackageDifference& difference : map.differences) {
     for (std::size_t c = 0; c < difference.scale.size(); ++c) {
-      shape.scale.push_back(static_cast<float>(difference.scale[c] * step));
+      shape.scale.push_back(static_cast<float>(difference.scale[c] * step / read_codes));
       // A whole number by the format's rule; the division leaves a rounding error that would make zero inexact.
       const double zero = difference.scale[c] > 0.0 ? std::round(-difference.offset[c] / difference.scale[c]) : 0.0;
-      shape.zero.push_back(static_cast<float>(zero));
+      shape.zero.push_back(static_cast<float>(zero * read_codes));
     }
   }
   return shape;
@@ -44,21 +47,21 @@ TextureShape textureShape(const PackageMap& map, int differences) {
 
 MapReader::MapReader(const Package& package, int map_index) {
   const PackageMap& map = package.maps()[toSize(map_index)];
-  images_.push_back(package::openImage(package.folder(), map.neutral_file, package::neutralShape(map)));
-  for (const PackageDifference& difference : map.differences) {
-    images_.push_back(package::openImage(package.folder(), difference.file, package::differenceShape(map)));
+  textures_.emplace_back(package.folder(), package::neutralTexture(map));
+  for (int i = 0; i < package.differences(); ++i) {
+    textures_.emplace_back(package.folder(), package::differenceTexture(map, i));
   }
-  row_bytes_.resize(images_.size());
+  row_bytes_.resize(textures_.size());
 }
 
 void MapReader::load(TextureRows& textures) {
-  std::vector<std::span<const std::byte>> differences(images_.size() - 1);
+  std::vector<std::span<const std::byte>> differences(textures_.size() - 1);
   const int most_rows = rowsAtOnce(textures.shape());
   for (int first = textures.begin(); first < textures.end(); first += most_rows) {
     const int rows = std::min(most_rows, textures.end() - first);
-    tbb::parallel_for(std::size_t{0}, images_.size(), [&](std::size_t i) {
-      row_bytes_[i].resize(toSize(rows) * images_[i].shape().rowBytes());
-      images_[i].readRows(first, first + rows, row_bytes_[i]);
+    tbb::parallel_for(std::size_t{0}, textures_.size(), [&](std::size_t i) {
+      row_bytes_[i].resize(toSize(rows) * textures_[i].shape().rowBytes());
+      textures_[i].readRows(first, first + rows, row_bytes_[i]);
     });
     for (std::size_t i = 0; i < differences.size(); ++i) differences[i] = row_bytes_[i + 1];
     textures.load(first, rows, row_bytes_[0], differences);

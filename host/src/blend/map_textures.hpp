@@ -1,4 +1,4 @@
-// map_textures.hpp - the images of one map of a package, read from disk into a TextureRows.
+// map_textures.hpp - the textures of one map of a package, read from disk into a TextureRows.
 #pragma once
 
 #include <memory>
@@ -7,14 +7,14 @@
 
 #include "blend/blend.hpp"
 #include "facezip/package.hpp"
-#include "image/image_file.hpp"
+#include "package/package_textures.hpp"
 
 namespace facezip::blend {
 
 /// The encoding and shape of a map's textures as the kernel wants them: differences in steps of the neutral's samples.
 TextureShape textureShape(const PackageMap& map, int differences);
 
-/// Rows of the images of a map that are read at a time, a multiple of kTileRows.
+/// Rows of the textures of a map that are read at a time, a multiple of kTileRows.
 int rowsAtOnce(const TextureShape& shape);
 
 /// Opens neutral and differences of one map and streams their rows.
@@ -27,7 +27,7 @@ class MapReader {
   void load(TextureRows& textures);
 
  private:
-  std::vector<image::ImageReader> images_;         // neutral, then C differences
+  std::vector<package::TextureReader> textures_;   // neutral, then C differences
   std::vector<std::vector<std::byte>> row_bytes_;  // a few rows of each
 };
 

@@ -125,8 +125,10 @@ void reconstruct(const Package& package, const fs::path& output, std::span<const
   std::vector<Share> shares;  // before any work
   for (const PackageMap& map : package.maps()) shares.push_back(shareMemory(package, map, memory_bytes));
   requireNoCapture(package, output);
-  io::requireOutside(output, package.directory(), "the package itself");
-  io::StagedDirectory staged(output);
+  const ProtectedPaths inputs = inputsOf(package);
+  inputs.requireApart(output);
+  for (const PackageMap& map : package.maps()) inputs.requireApart(output / map.name);
+  io::StagedDirectory staged(output, &progress);
   progress.stage("reconstruct", totalRows(package, chosen.size()));
   const auto weights = blend::loadWeightMaps(package, device);
   std::size_t done = 0;

@@ -29,7 +29,7 @@ void writeFromDevice(const Package& package, const AnimationClip& clip, const Ga
       const PackageMap& map = package.maps()[m];
       frame.resize(map.frameBytes());
       blender.blend(static_cast<int>(m), frame);
-      writeFrame(pattern.file(f, map.name), map, frame);
+      writeFrame(pattern.file(f, map.name), map, frame, &progress);
     }
     progress.advance(static_cast<std::size_t>(f) + 1);
   }
@@ -50,7 +50,7 @@ class BandFrames {
     const PackageMap& map = package_.maps()[m];
     std::vector<float> beta(weights.begin(), weights.end());
     for (std::size_t n = 0; n < beta.size(); ++n) beta[n] *= gain_.expressions[n];
-    blend::writeFrameBy(file, map, [&](image::ImageWriter& writer) {
+    blend::writeFrameBy(file, map, &progress, [&](image::ImageWriter& writer) {
       const int rows_at_once = blenders_[m].rowsWithin(band_bytes_);
       std::vector<std::byte> rows;
       for (int begin = 0; begin < map.height; begin += rows_at_once) {

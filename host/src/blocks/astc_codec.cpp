@@ -66,6 +66,7 @@ AstcCodec::AstcCodec(BlockFormat format, int channels, const AstcEffort& effort,
           "choosing how to code ASTC");
   setWeights(channel_weights, channels, config);
   if (effort.enough) config.tune_db_limit = 20.0f * std::log10(255.0f / std::max(*effort.enough, 1e-3f));
+  if (effort.plain) config.tune_partition_count_limit = config.tune_candidate_limit = config.tune_refinement_limit = 1;
   astcenc_context* context = nullptr;
   require(astcenc_context_alloc(&config, threads_, &context), "starting to code ASTC");
   context_.reset(context);

@@ -31,9 +31,9 @@ EncoderOptions checked(EncoderOptions options) {
 AstcEffort astcEffort(Quality quality) {
   // Skin is smooth: at its own limits libastcenc leaves a quarter more error than need be. docs/block_formats.md has
   // figures.
-  if (quality == Quality::kFast) return {0.0f, std::nullopt};
-  if (quality == Quality::kNormal) return {10.0f, 1.3f};
-  return {60.0f, 0.8f};
+  if (quality == Quality::kFast) return {.search = 0.0f, .enough = std::nullopt, .plain = true};
+  if (quality == Quality::kNormal) return {.search = 10.0f, .enough = 1.3f};
+  return {.search = 60.0f, .enough = 0.8f};
 }
 
 AstcEncoder::AstcEncoder(const EncoderOptions& options)

@@ -48,19 +48,6 @@ const BlockFormatInfo& infoOf(BlockFormat format) {
   return kFormats[index];
 }
 
-BlockFormat blockFormatOf(std::string_view name, std::string_view option) {
-  const auto found =
-      std::find_if(kFormats.begin(), kFormats.end(), [&](const auto& info) { return info.name == name; });
-  if (found != kFormats.end()) return found->format;
-  throw InputError({std::string(option), "", "one of " + blockFormatNames(), std::string(name), ""});
-}
-
-std::string blockFormatNames() {
-  std::string names;
-  for (const BlockFormatInfo& info : kFormats) names += fmt::format("{}{}", names.empty() ? "" : ", ", info.name);
-  return names;
-}
-
 bool isAstc(BlockFormat format) { return format >= kAstc4x4; }
 
 int blockCount(int texels, int block_side) { return texels / block_side + (texels % block_side != 0 ? 1 : 0); }
@@ -72,3 +59,22 @@ std::size_t blockBytes(BlockFormat format, int width, int height) {
 }
 
 }  // namespace facezip::blocks
+
+namespace facezip {
+
+std::string_view blockFormatName(BlockFormat format) { return blocks::infoOf(format).name; }
+
+BlockFormat blockFormatOf(std::string_view name, std::string_view option) {
+  const auto formats = blocks::blockFormats();
+  const auto found = std::ranges::find(formats, name, &blocks::BlockFormatInfo::name);
+  if (found != formats.end()) return found->format;
+  throw InputError({std::string(option), "", "one of " + blockFormatNames(), std::string(name), ""});
+}
+
+std::string blockFormatNames() {
+  std::string names;
+  for (const blocks::BlockFormatInfo& info : blocks::blockFormats()) names += fmt::format("{}{}", names.empty() ? "" : ", ", info.name);
+  return names;
+}
+
+}  // namespace facezip

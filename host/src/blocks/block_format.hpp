@@ -1,35 +1,18 @@
-// block_format.hpp - block-compressed texture formats: textures that GPUs hold as blocks of a few texels each and
-// decode while they sample.
+// block_format.hpp - what files, graphics APIs and encoders know of block formats.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <string_view>
+
+#include "facezip/block_format.hpp"
 
 namespace facezip::blocks {
 
-enum class BlockFormat {
-  kBc1,
-  kBc4,
-  kBc5,
-  kBc7,
-  kAstc4x4,
-  kAstc5x4,
-  kAstc5x5,
-  kAstc6x5,
-  kAstc6x6,
-  kAstc8x5,
-  kAstc8x6,
-  kAstc8x8,
-  kAstc10x5,
-  kAstc10x6,
-  kAstc10x8,
-  kAstc10x10,
-  kAstc12x10,
-  kAstc12x12,
-};
+using facezip::BlockFormat;
+using facezip::blockFormatNames;
+using facezip::blockFormatOf;
 
 /// What files and graphics APIs call a format.
 struct BlockFormatInfo {
@@ -51,12 +34,6 @@ struct BlockFormatInfo {
 /// All formats, in the order of the enumeration.
 std::span<const BlockFormatInfo> blockFormats();
 const BlockFormatInfo& infoOf(BlockFormat format);
-
-/// The format of that name, with `option` named in the error. Throws InputError that lists the names there are.
-BlockFormat blockFormatOf(std::string_view name, std::string_view option);
-
-/// "bc1, bc4, ...", for messages and help.
-std::string blockFormatNames();
 
 /// Whether blocks are ASTC's, which libastcenc codes; all others are coded here.
 bool isAstc(BlockFormat format);

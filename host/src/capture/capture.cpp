@@ -8,7 +8,9 @@
 #include <set>
 
 #include "capture/capture_json.hpp"
+#include "capture/expression_meshes.hpp"
 #include "facezip/geometry/obj_io.hpp"
+#include "facezip/input_file.hpp"
 #include "image/input_extensions.hpp"
 #include "package/package_json.hpp"
 #include "package/safe_names.hpp"
@@ -42,8 +44,7 @@ std::vector<fs::directory_entry> entriesOf(const fs::path& folder) {
 std::map<std::string, fs::path> imagesByName(const fs::path& folder) {
   std::map<std::string, fs::path> images;
   for (const fs::directory_entry& entry : entriesOf(folder)) {
-    std::error_code ignored;
-    if (!entry.is_regular_file(ignored) || !isImage(entry.path())) continue;
+    if (!isImage(entry.path())) continue;
     const auto [it, inserted] = images.emplace(entry.path().stem().string(), entry.path());
     if (inserted) continue;
     std::set<std::string> both = {it->second.filename().string(), entry.path().filename().string()};
@@ -131,13 +132,13 @@ std::vector<std::string> expressionNames(const fs::path& directory, const Captur
 
 fs::path textureOf(const FoundMap& map, const std::string& map_name, const std::string& name) {
   const auto found = map.images.find(name);
-  std::error_code error;
-  if (found != map.images.end() && fs::exists(found->second, error)) return found->second;
-  const fs::path missing = found != map.images.end() ? found->second : map.folder / (name + ".png");
+  const fs::path file = found != map.images.end() ? found->second : map.folder / (name + ".png");
+  const std::string fault = faultOfFile(file);
+  if (fault.empty() && found != map.images.end()) return file;
   throw InputError(
-      {missing.string(), fmt::format("map \"{}\"", map_name),
+      {file.string(), fmt::format("map \"{}\"", map_name),
        name == "neutral" ? "the texture of the neutral" : fmt::format("the texture of expression \"{}\"", name),
-       "no such file", "add the texture, or take the map or expression out"});
+       fault.empty() ? "no such file" : fault, "add the texture, or take the map or expression out"});
 }
 
 CaptureMap makeMap(const std::string& name, const FoundMap& found, const std::vector<std::string>& expressions) {
@@ -166,44 +167,6 @@ std::vector<std::string> chooseMaps(const fs::path& directory, const std::map<st
   return wanted.empty() ? names : wanted;
 }
 
-/// The expressions' meshes by name; the folder may be absent.
-std::map<std::string, fs::path> meshesByName(const fs::path& folder) {
-  std::map<std::string, fs::path> meshes;
-  std::error_code error;
-  if (!fs::exists(folder, error) && !error) return meshes;
-  for (const fs::path& file : geometry::objFiles(folder)) meshes.emplace(file.stem().string(), file);
-  return meshes;
-}
-
-/// "a, b, c and 9 more"
-std::string listed(const std::vector<std::string>& names) {
-  constexpr std::size_t kMostListed = 8;
-  const std::size_t shown = names.size() > kMostListed + 1 ? kMostListed : names.size();
-  const std::string more = shown < names.size() ? fmt::format(" and {} more", names.size() - shown) : "";
-  return fmt::format("{}{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "), more);
-}
-
-/// Says which meshes stay unused and who lacks one: a misspelt name would otherwise go unnoticed.
-void noteUnmatchedMeshes(const fs::path& folder, const std::map<std::string, fs::path>& meshes,
-                         const std::vector<std::string>& expressions, Progress& progress) {
-  std::vector<std::string> unused, lacking;
-  for (const auto& [name, file] : meshes) {
-    const bool known = std::find(expressions.begin(), expressions.end(), name) != expressions.end();
-    if (!known && name != "neutral") unused.push_back(file.filename().string());
-  }
-  for (const std::string& name : expressions) {
-    if (!meshes.contains(name)) lacking.push_back(name);
-  }
-  std::string text;
-  if (!unused.empty()) {
-    text = fmt::format("{} match{} no expression", listed(unused), unused.size() == 1 ? "es" : "");
-  }
-  if (!lacking.empty() && !meshes.empty()) {
-    text += fmt::format("{}no mesh for {}", text.empty() ? "" : "; ", listed(lacking));
-  }
-  if (!text.empty()) progress.note(fmt::format("{}: {} (meshes are named as textures are)", folder.string(), text));
-}
-
 /// The mesh of the neutral: as capture.json names it, else neutral.obj, its extension in any case.
 fs::path neutralMesh(const fs::path& directory, const CaptureJson& description) {
   if (!description.neutral_mesh.empty()) return directory / description.neutral_mesh;
@@ -214,15 +177,17 @@ fs::path neutralMesh(const fs::path& directory, const CaptureJson& description) 
 }
 
 std::optional<fs::path> optionalFile(const fs::path& directory, const std::string& named, const std::string& usual) {
-  if (!named.empty()) return directory / named;  // named in capture.json: a missing one is an error when it is read
+  // What capture.json names, or stands there as a link that leads nowhere, is an error when it is read.
+  if (!named.empty()) return directory / named;
   std::error_code error;
-  if (fs::exists(directory / usual, error)) return directory / usual;
+  if (fs::exists(fs::symlink_status(directory / usual, error))) return directory / usual;
   return std::nullopt;
 }
 
 /// The name of a capture that has none of its own.
 std::string nameOf(const fs::path& directory) {
-  const std::string name = fs::absolute(directory).lexically_normal().filename().string();
+  const fs::path path = fs::absolute(directory).lexically_normal();  // "face/" ends in an empty name
+  const std::string name = (path.has_filename() ? path : path.parent_path()).filename().string();
   if (!package::isUtf8(name)) {
     throw InputError({directory.string(), "name", "a name in UTF-8", package::quoted(name),
                       "rename the directory, or name the capture in capture.json"});
@@ -258,8 +223,8 @@ Capture openCapture(const fs::path& directory, const std::vector<std::string>& m
   capture.name = description.name.empty() ? nameOf(directory) : description.name;
   capture.unit = description.unit;
   capture.neutral_mesh = neutralMesh(directory, description);
-  if (!fs::exists(capture.neutral_mesh, error)) {
-    throw InputError({capture.neutral_mesh.string(), "", "the mesh of the neutral", "no such file", ""});
+  if (const std::string fault = faultOfFile(capture.neutral_mesh); !fault.empty()) {
+    throw InputError({capture.neutral_mesh.string(), "", "the mesh of the neutral", fault, ""});
   }
   const std::vector<std::string> chosen = chooseMaps(directory, found, map_names);
   std::map<std::string, FoundMap> used;
@@ -271,16 +236,32 @@ Capture openCapture(const fs::path& directory, const std::vector<std::string>& m
   capture.expressions = expressionNames(directory, description, used);
   for (const std::string& name : chosen) requireKnownExpressions(name, description, capture.expressions, directory);
   for (const std::string& name : chosen) capture.maps.push_back(makeMap(name, used.at(name), capture.expressions));
-  const std::map<std::string, fs::path> meshes = meshesByName(directory / "expressions");
-  for (const std::string& name : capture.expressions) {
-    const auto mesh = meshes.find(name);
-    capture.expression_meshes.push_back(mesh != meshes.end() ? mesh->second : fs::path());
+  for (const auto& [name, file] : description.expression_meshes) {
+    if (std::ranges::find(capture.expressions, name) != capture.expressions.end()) continue;
+    throw InputError({(directory / kCaptureFile).string(), "expression_meshes", "expressions of the capture",
+                      package::quoted(name), ""});
   }
-  if (progress != nullptr) noteUnmatchedMeshes(directory / "expressions", meshes, capture.expressions, *progress);
+  capture.expression_meshes =
+      findExpressionMeshes(directory, description.expression_meshes, capture.expressions, progress);
   capture.face_region = optionalFile(directory, description.face_region, "face_region.txt");
   capture.coverage = optionalFile(directory, description.coverage, "coverage.png");
   capture.importance = optionalFile(directory, description.importance, "importance.png");
   return capture;
+}
+
+ProtectedPaths inputsOf(const Capture& capture) {
+  const std::string what = "the capture that is read";
+  ProtectedPaths inputs;
+  inputs.add(capture.directory, what).addFile(capture.neutral_mesh, what);
+  for (const auto& file : {capture.face_region, capture.coverage, capture.importance}) {
+    inputs.addFile(file.value_or(fs::path()), what);
+  }
+  for (const fs::path& mesh : capture.expression_meshes) inputs.addFile(mesh, what);
+  for (const CaptureMap& map : capture.maps) {
+    inputs.addFile(map.neutral, what);
+    for (const fs::path& texture : map.expressions) inputs.addFile(texture, what);
+  }
+  return inputs;
 }
 
 }  // namespace facezip

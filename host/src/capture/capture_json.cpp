@@ -16,14 +16,18 @@ std::string optionalText(const JsonField& object, const std::string& key) {
   return object.has(key) ? object[key].text() : "";
 }
 
+std::map<std::string, std::string> filesByExpression(const JsonField& field) {
+  std::map<std::string, std::string> files;
+  for (const auto& [expression, file] : field.object().items()) files[expression] = field[expression].text();
+  return files;
+}
+
 CaptureJson::Map readMap(const JsonField& field) {
   CaptureJson::Map map;
   if (field.has("colour_space")) map.colour_space = package::parseColourSpace(field["colour_space"]);
   if (field.has("weight")) map.weight = package::parseMetricWeight(field["weight"]);
   map.neutral = optionalText(field, "neutral");
-  if (!field.has("expressions")) return map;
-  const JsonField files = field["expressions"];
-  for (const auto& [expression, file] : files.object().items()) map.expressions[expression] = files[expression].text();
+  if (field.has("expressions")) map.expressions = filesByExpression(field["expressions"]);
   return map;
 }
 
@@ -31,7 +35,8 @@ CaptureJson::Map readMap(const JsonField& field) {
 
 std::optional<CaptureJson> readCaptureJson(const fs::path& file) {
   std::error_code error;
-  if (!fs::exists(file, error) && !error) return std::nullopt;
+  // A link that leads nowhere is something, and an error.
+  if (fs::symlink_status(file, error).type() == fs::file_type::not_found) return std::nullopt;
   const nlohmann::json json =
       package::parseJson(io::readFile(file, "the description of a capture"), file.string(), kCure);
   const JsonField root(json, file.string(), "", kCure);
@@ -47,6 +52,7 @@ std::optional<CaptureJson> readCaptureJson(const fs::path& file) {
       description.expressions.push_back(name.text());
     }
   }
+  if (root.has("expression_meshes")) description.expression_meshes = filesByExpression(root["expression_meshes"]);
   if (!root.has("maps")) return description;
   const JsonField maps = root["maps"];
   for (const auto& [name, map] : maps.object().items()) description.maps[name] = readMap(maps[name]);

@@ -24,6 +24,7 @@ struct CaptureJson {
   std::string coverage;
   std::string importance;
   std::vector<std::string> expressions;
+  std::map<std::string, std::string> expression_meshes;  ///< expression to file relative to the capture
   std::map<std::string, Map> maps;
 };
 

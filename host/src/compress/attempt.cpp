@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "compress/block_stage.hpp"
 #include "compress/compress_stretch.hpp"
 #include "compress/fit_choice.hpp"
 #include "compress/method_record.hpp"
@@ -53,6 +54,7 @@ std::vector<FittedWeights> fitGroups(const CompressionJob& job, const PackageFor
     if (!fitsTextures(job.options.method)) {
       const auto textures = directTextures(job, space, searched[g]);
       fitted.push_back(keepWeights(searched[g].weights, groups[g], form.differences, *textures, band_rows, job.run));
+      if (form.blocks) fitted.back().neutrals = codeNeutrals(form, groups[g], job.run);
       continue;
     }
     const GramMatrices& grams = job.grams.grams[g];
@@ -65,6 +67,10 @@ std::vector<FittedWeights> fitGroups(const CompressionJob& job, const PackageFor
                              job.memory.windowRows(form, groups[g])};
     fitted.push_back(job.options.method == Method::kClosedLoop ? fitWeights(problem, 0, job.run)
                                                                : chooseFit(problem, form, face, band_rows, job.run));
+    if (!form.blocks) continue;
+    fitted.back().neutrals = codeNeutrals(form, groups[g], job.run);
+    if (job.options.method != Method::kRefined) continue;
+    fitted.back().weights = fitWeightsToBlocks(problem, form, fitted.back(), face, job.run);
   }
   return fitted;
 }

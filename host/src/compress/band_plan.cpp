@@ -20,8 +20,9 @@ constexpr std::uint64_t kUsefulWindowBytes = 192 * kMiB;
 constexpr int kTypicalMasksPerTile = 16;
 
 /// What a window of the refinement keeps of one map, per row of its image.
-BandCost windowCost(const GridMap& map, const WeightSpace& space) {
-  const BandShape shape = bandShape(*map.map->samples, 0);
+BandCost windowCost(const GridMap& map, const WeightSpace& space, bool blocks) {
+  BandShape shape = bandShape(*map.map->samples, 0);
+  shape.neutral_decoded = blocks;
   const auto tiles = static_cast<std::uint64_t>((shape.width + kTileSide - 1) / kTileSide);
   const std::uint64_t samples = tiles * kTileSide * static_cast<std::uint64_t>(shape.channels) *
                                 (static_cast<std::uint64_t>(shape.expressions) + 1) *
@@ -50,10 +51,15 @@ BandCost bandCost(const BandShape& shape, int textures, int mask_count) {
   const std::uint64_t masks = texels * 4 * static_cast<std::uint64_t>(std::min(mask_count, kTypicalMasksPerTile) + 1);
   const std::uint64_t raster = texels * 16 * 2;
   const std::uint64_t outputs = texels * channels * static_cast<std::uint64_t>(textures) * (4 + 2);
+  const std::uint64_t factors =
+      shape.neutral_decoded
+          ? texels * sizeof(float) *
+                static_cast<std::uint64_t>(FACEZIP_FACTOR_PLANES(textures, shape.channels) + 2 * shape.channels * textures)
+          : 0;  // and codes, decoded textures
   BandCost cost;
   // Samples: one band being decoded, one at work, one on the device. Masks: on the host and on the device.
-  cost.per_row = 3 * samples + differences + 2 * masks + raster + outputs;
-  cost.largest_buffer_per_row = std::max({samples, differences, masks, outputs});
+  cost.per_row = 3 * samples + differences + 2 * masks + raster + outputs + factors;
+  cost.largest_buffer_per_row = std::max({samples, differences, masks, outputs, factors});
   return cost;
 }
 
@@ -86,20 +92,20 @@ int planBandRows(const BandCost& cost, int height, std::uint64_t memory_bytes, s
   return static_cast<int>(std::clamp<std::uint64_t>(rows / step * step, step, needed));
 }
 
-int planWindowRows(std::span<const GridMap> maps, const WeightSpace& space, bool half_cells, std::uint64_t memory_bytes,
-                   std::uint64_t resident_bytes, const DeviceInfo& device) {
+int planWindowRows(std::span<const GridMap> maps, const WeightSpace& space, const WindowForm& form,
+                   std::uint64_t memory_bytes, std::uint64_t resident_bytes, const DeviceInfo& device) {
   BandCost cost;  // per row of the finest map
   cost.useful_bytes = kUsefulWindowBytes;
   const GridMap& finest = *std::ranges::max_element(maps, {}, &GridMap::weight_scale);
   const auto finest_scale = static_cast<std::uint64_t>(finest.weight_scale);
   for (const GridMap& map : maps) {
-    const BandCost one = windowCost(map, space);
+    const BandCost one = windowCost(map, space, form.blocks);
     const auto scale = static_cast<std::uint64_t>(map.weight_scale);
     cost.per_row += one.per_row * scale / finest_scale;
     cost.largest_buffer_per_row =
         std::max(cost.largest_buffer_per_row, one.largest_buffer_per_row * scale / finest_scale);
   }
-  if (half_cells) {
+  if (form.half_cells) {
     const std::uint64_t bytes = HalfCells::bytesOfCellRow(space) / finest_scale;
     cost.per_row += bytes;
     cost.largest_buffer_per_row = std::max(cost.largest_buffer_per_row, bytes);

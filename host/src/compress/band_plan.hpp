@@ -21,7 +21,7 @@ struct BandCost {
   int rows_beside = 0;  ///< that are held with a band besides its own
 };
 
-/// shape       of the map; its rows are ignored
+/// shape       of the map; its rows are ignored; neutral_decoded where its textures are coded in blocks
 /// textures    C
 /// mask_count  K; a tile is taken to hold min(K, 16) of them, twice what 3 cm masks show on a head
 BandCost bandCost(const BandShape& shape, int textures, int mask_count);
@@ -33,10 +33,15 @@ BandCost bandCost(const BandShape& shape, int textures, int mask_count);
 int planBandRows(const BandCost& cost, int height, std::uint64_t memory_bytes, std::uint64_t resident_bytes,
                  const DeviceInfo& device);
 
+/// What windows of the refinement hold besides texels.
+struct WindowForm {
+  bool half_cells = false;  ///< whether the sweeps are made on half cells
+  bool blocks = false;      ///< whether weights are fitted to coded textures, too
+};
+
 /// Rows of cells that a window of the refinement frees: a multiple of windowRowStep(maps), so that the windows of all
 /// maps together stay within the memory. Arguments and errors as planBandRows() has them.
-/// half_cells  whether the sweeps are made on half cells
-int planWindowRows(std::span<const GridMap> maps, const WeightSpace& space, bool half_cells, std::uint64_t memory_bytes,
-                   std::uint64_t resident_bytes, const DeviceInfo& device);
+int planWindowRows(std::span<const GridMap> maps, const WeightSpace& space, const WindowForm& form,
+                   std::uint64_t memory_bytes, std::uint64_t resident_bytes, const DeviceInfo& device);
 
 }  // namespace facezip::compress

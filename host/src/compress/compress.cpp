@@ -36,11 +36,19 @@ std::uint64_t diskBytes(const fs::path& directory) {
   return bytes;
 }
 
-PackageForm formOf(const RatePoint& point) { return {point.differences, point.weight_scale, point.code_bits}; }
+PackageForm formOf(const RatePoint& point) {
+  return {point.differences, point.weight_scale, point.code_bits, std::nullopt};
+}
 
 PackageForm formOf(const CompressOptions& options) {
   const bool stretches = options.method == Method::kCompressStretch;
-  return {stretches ? kCompressStretchMaps : options.differences, options.weight_scale, std::nullopt};
+  PackageForm form{stretches ? kCompressStretchMaps : options.differences, options.weight_scale, std::nullopt,
+                   std::nullopt};
+  if (options.texture_format) {
+    form.blocks = TextureFormats{*options.texture_format,
+                                 options.difference_format.value_or(*options.texture_format)};
+  }
+  return form;
 }
 
 std::optional<RateSearch> searchRates(const CompressOptions& options, const MapSet& maps, std::size_t weight_sets) {
@@ -91,12 +99,20 @@ double CompressReport::permutationGap() const {
   return (permutation_cost - *permutation_bound) / permutation_cost;
 }
 
+ProtectedPaths inputsOf(const Capture& capture, const CompressOptions& options) {
+  ProtectedPaths inputs = inputsOf(capture);
+  if (options.region != "whole") inputs.addFile(options.region, "the region that is read");
+  if (options.importance != "none") inputs.addFile(options.importance, "the importance that is read");
+  return inputs;
+}
+
 CompressReport compressCapture(const Capture& capture, const fs::path& package, const CompressOptions& options,
                                const Device& device, Progress& progress) {
   requireSaneOptions(options);
+  inputsOf(capture, options).requireApartFromFolder(package);
   StageClock clock;
   const Run run{device.context(), progress, clock, options.memory_bytes};
-  io::StagedDirectory staged(package, package::footprint());
+  io::StagedDirectory staged(package, package::footprint(), &progress);
   OpenTextures textures = openTextures(capture, staged.path(), run);
   MapSet& maps = textures.maps;
   const FaceModel model = readFaceModel(capture, options, run);

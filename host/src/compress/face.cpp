@@ -105,7 +105,7 @@ std::vector<Eigen::MatrixX3d> readExpressionMeshes(const Capture& capture, const
 
 namespace {
 
-/// Finds the mesh's unit where a length in a physical unit has to be applied to it.
+/// Finds the mesh's unit, where a length in a physical unit has to be applied to it or its size is written.
 void resolveUnit(const Capture& capture, const Face& face, const CompressOptions& options, FaceMasks& result,
                  Progress& progress) {
   const std::string stated = options.unit.value_or(capture.unit);
@@ -113,14 +113,17 @@ void resolveUnit(const Capture& capture, const Face& face, const CompressOptions
     result.unit = geometry::parseUnit(stated);
     return;
   }
-  if (options.masks || !options.mask_radius.unit) return;
+  const bool needed = !options.masks && options.mask_radius.unit;
+  if (!needed && !options.mesh) return;
   try {
     const geometry::UnitGuess guess = geometry::guessUnit(face.mesh);
     result.unit = guess.unit;
     result.unit_guessed = true;
     progress.note(guess.explanation);
   } catch (const InputError& error) {
-    throw error.in(capture.neutral_mesh.string());
+    if (needed) throw error.in(capture.neutral_mesh.string());
+    progress.note(fmt::format("{}: its size ({}) tells no unit: it is written as if in metres; {}",
+                              capture.neutral_mesh.string(), error.parts().got, error.parts().cure));
   }
 }
 

@@ -39,14 +39,15 @@ std::vector<Eigen::MatrixX3d> readExpressionMeshes(const Capture& capture, const
 
 /// The masks of a face (FaceZip 3.1, "Mask Computation").
 struct FaceMasks {
-  std::optional<geometry::LengthUnit> unit;  ///< of the mesh; none when neither stated nor needed
+  std::optional<geometry::LengthUnit> unit;  ///< of the mesh; none where it is neither stated nor a head's
   bool unit_guessed = false;
   geometry::RegionMesh region;
   geometry::SurfaceSamples samples;
   geometry::MaskWeights masks;
 };
 
-/// Samples the region and solves the masks. Notes a guessed unit. Throws InputError and SolverError.
+/// Samples the region and solves the masks. Notes a guessed unit, and a size that is no head's.
+/// Throws InputError and SolverError.
 FaceMasks makeFaceMasks(const Capture& capture, const Face& face, const CompressOptions& options, Progress& progress);
 
 }  // namespace facezip::compress

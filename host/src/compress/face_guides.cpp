@@ -94,15 +94,6 @@ std::vector<PackageRegion> nameRegions(const FaceMasks& masks) {
   return regions;
 }
 
-double metresPerUnit(const Face& face, std::optional<geometry::LengthUnit> unit) {
-  if (unit) return geometry::metresPerUnit(*unit);
-  try {
-    return geometry::metresPerUnit(geometry::guessUnit(face.mesh).unit);
-  } catch (const InputError&) {
-    return 1.0;  // no head: its own unit will do
-  }
-}
-
 }  // namespace
 
 MaskGuides makeMaskGuides(const Face& face, const FaceMasks& masks, const raster::GridMasks& grid) {
@@ -126,7 +117,7 @@ void writeFaceMesh(const Capture& capture, const Face& face, std::optional<geome
   scene.neutral = face.mesh;
   // In floats, as the expressions are: what does not move is then exactly 0.
   scene.neutral.positions = face.mesh.positions.cast<float>().cast<double>();
-  scene.metres_per_unit = metresPerUnit(face, unit);
+  scene.metres_per_unit = unit ? geometry::metresPerUnit(*unit) : 1.0;  // no head: its own unit will do
   for (std::size_t n = 0; n < expressions.size(); ++n) {
     if (expressions[n].rows() == 0) continue;
     scene.targets.push_back({capture.expressions[n], expressions[n].cast<double>()});

@@ -13,26 +13,32 @@ namespace {
 /// Share of the weights at either end that may be clamped when they become bytes.
 constexpr double kClippedWeights = 2e-4;
 
-/// Mean energy of an expression's differences on a covered cell: what smoothness and trust are measured by.
+}  // namespace
+
 double cellEnergy(const FitProblem& problem) {
   const double energy = problem.energy / problem.space.expressions;
   const auto cells = static_cast<double>(std::ranges::count(problem.covered, 1));
   return energy > 0.0 ? energy / std::max(cells, 1.0) : 1.0;
 }
 
-}  // namespace
+MakeMapTiles weighedTiles(const FitProblem& problem) {
+  return [&problem](const OpenMap& map, int begin, int end) {
+    return weighed(raster::activeTiles(*map.classes, begin, end), problem.importance, map.samples->shape(), begin);
+  };
+}
+
+EncodedWeights encodeFitted(const GridWeights& weights, const FitProblem& problem) {
+  return weights.encode(problem.covered, kClippedWeights);
+}
 
 FittedWeights fitWeights(const FitProblem& problem, int most_sweeps, const Run& run) {
   RefinementOptions options;
   options.most_sweeps = most_sweeps;
-  RefinementProblem refinement{problem.space,       problem.start,      problem.maps, {},
-                               cellEnergy(problem), problem.window_rows};
-  refinement.make_tiles = [&problem](const OpenMap& map, int begin, int end) {
-    return weighed(raster::activeTiles(*map.classes, begin, end), problem.importance, map.samples->shape(), begin);
-  };
+  const RefinementProblem refinement{problem.space,         problem.start,       problem.maps,
+                                     weighedTiles(problem), cellEnergy(problem), problem.window_rows};
   Refinement refined = refine(run.context, refinement, options, run.progress);
   FittedWeights fitted;
-  fitted.weights = most_sweeps > 0 ? refined.weights.encode(problem.covered, kClippedWeights) : problem.start;
+  fitted.weights = most_sweeps > 0 ? encodeFitted(refined.weights, problem) : problem.start;
   fitted.ranges = std::move(refined.ranges);
   fitted.errors = std::move(refined.end_errors);
   fitted.sweep_errors = std::move(refined.errors);

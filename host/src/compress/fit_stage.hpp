@@ -7,9 +7,11 @@
 #include <vector>
 
 #include "compress/bands/map_set.hpp"
+#include "compress/codes/coded_neutral.hpp"
 #include "compress/codes/texture_encoding.hpp"
 #include "compress/importance.hpp"
 #include "compress/refine/grid_weights.hpp"
+#include "compress/refine/map_window.hpp"
 #include "compress/run.hpp"
 #include "compress/texture_source.hpp"
 
@@ -23,6 +25,8 @@ struct FittedWeights {
   std::vector<double> errors;
   /// Squared error of all maps, texel and fit weights in it, at the start and after each sweep.
   std::vector<double> sweep_errors;
+  /// Of every map: its neutral in blocks; none for maps that are kept as images. Empty where all are.
+  std::vector<std::optional<CodedNeutral>> neutrals;
 };
 
 /// What is fitted. References outlive the call.
@@ -40,6 +44,15 @@ struct FitProblem {
 /// most_sweeps  0: the start's weights, and the textures that suit them
 /// Throws DeviceError, InputError, Cancelled.
 FittedWeights fitWeights(const FitProblem& problem, int most_sweeps, const Run& run);
+
+/// Mean energy of an expression's differences on a covered cell: what smoothness and trust are measured by.
+double cellEnergy(const FitProblem& problem);
+
+/// Tiles of a map that a fit looks at, with importance in their texel weights.
+MakeMapTiles weighedTiles(const FitProblem& problem);
+
+/// Bytes of fitted weights, as packages hold them.
+EncodedWeights encodeFitted(const GridWeights& weights, const FitProblem& problem);
 
 /// The weights as they are, with textures that follow from them (the paper's method): a pass finds how far those reach.
 /// textures  of the maps' weights

@@ -1,10 +1,12 @@
 #include "compress/memory_plan.hpp"
 
 #include <algorithm>
+#include <array>
 #include <set>
 
 #include "compress/band_plan.hpp"
 #include "compress/bands/map_bands.hpp"
+#include "compress/codes/coded_textures.hpp"
 #include "compress/refine/refinement.hpp"
 
 namespace facezip::compress {
@@ -24,11 +26,24 @@ std::uint64_t MemoryPlan::residentBytes(const WeightSpace& space) const {
          cells * (weights * (2 * weight_sets_ + 2) + kMasksOfACell * (sizeof(int) + sizeof(float)) + sizeof(int));
 }
 
+namespace {
+
+/// Bands are whole rows of blocks.
+int rowStep(const PackageForm& form) {
+  if (!form.blocks) return kTileSide;
+  return blockRowStep(std::array{form.blocks->neutral, form.blocks->differences});
+}
+
+}  // namespace
+
 int MemoryPlan::bandRows(const PackageForm& form) const {
   const std::uint64_t resident = residentBytes(weightSpace(maps_, form));
   int rows = 0;
   for (const OpenMap& map : maps_.maps) {
-    const BandCost cost = bandCost(bandShape(*map.samples, 0), form.differences, slots_.masks);
+    BandShape shape = bandShape(*map.samples, 0);
+    shape.neutral_decoded = form.blocks && shape.sample_type == image::SampleType::kUint8;
+    BandCost cost = bandCost(shape, form.differences, slots_.masks);
+    cost.row_step = rowStep(form);  // of all maps, which have bands of the same rows
     const int planned =
         planBandRows(cost, map.samples->shape().height, run_.memory_bytes, resident, run_.context.info());
     rows = rows == 0 ? planned : std::min(rows, planned);
@@ -38,7 +53,8 @@ int MemoryPlan::bandRows(const PackageForm& form) const {
 
 int MemoryPlan::windowRows(const PackageForm& form, std::span<const GridMap> group) const {
   const WeightSpace space = weightSpace(maps_, form);
-  return planWindowRows(group, space, sweepsHalfCells(run_.context, group), run_.memory_bytes, residentBytes(space),
+  return planWindowRows(group, space, {sweepsHalfCells(run_.context, group), form.blocks.has_value()},
+                        run_.memory_bytes, residentBytes(space),
                         run_.context.info());
 }
 

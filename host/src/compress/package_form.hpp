@@ -5,13 +5,26 @@
 
 #include "compress/bands/map_set.hpp"
 #include "compress/refine/weight_window.hpp"
+#include "facezip/block_format.hpp"
 
 namespace facezip::compress {
+
+/// Blocks of the maps of 8 bits.
+struct TextureFormats {
+  BlockFormat neutral = BlockFormat::kBc7;
+  BlockFormat differences = BlockFormat::kBc7;
+  bool operator==(const TextureFormats&) const = default;
+};
+
+/// The format in which a map of so many channels gets what was asked for: BC4 and BC5 have one and two channels, which
+/// BC1 and BC7 would waste bits beside; BC1 has no fourth.
+BlockFormat formatFor(BlockFormat wanted, int channels);
 
 struct PackageForm {
   int differences = 4;           ///< C
   int weight_scale = 8;          ///< texels of the largest map per weight cell, per axis
   std::optional<int> code_bits;  ///< of difference textures of maps of 16 bits or floats; none: as the fit needs them
+  std::optional<TextureFormats> blocks;  ///< none: all textures are images
 };
 
 /// The weight maps of a package of this form.

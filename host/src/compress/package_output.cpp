@@ -6,7 +6,9 @@
 #include <span>
 #include <utility>
 
+#include "blocks/mipped_texture_writer.hpp"
 #include "compress/bands/map_bands.hpp"
+#include "compress/codes/block_weights.hpp"
 #include "compress/codes/difference_texture_encode.hpp"
 #include "facezip/package.hpp"
 #include "package/guides.hpp"
@@ -29,8 +31,10 @@ PackageMap describeMap(const MapSolution& solution, int differences) {
   described.weight_set = solution.weight_set;
   described.metric_weight = map.source->metric_weight;
   described.difference_bits = solution.codes.bits;
+  if (solution.neutral != nullptr) described.neutral_format = solution.neutral->format;
   for (int i = 0; i < differences; ++i) {
     PackageDifference difference;
+    if (solution.neutral != nullptr) difference.format = solution.codes.formats[static_cast<std::size_t>(i)];
     for (int c = 0; c < shape.channels; ++c) {
       const TextureEncoding& e = solution.codes.encoding[static_cast<std::size_t>(i * shape.channels + c)];
       difference.scale.push_back(e.scale);
@@ -97,6 +101,44 @@ void writeMap(const MapSolution& solution, int index, int differences, int band_
   files.wait();
 }
 
+blocks::EncoderOptions mipOptions(BlockFormat format, int channels) {
+  blocks::EncoderOptions options;
+  options.format = format;
+  options.channels = channels;
+  return options;
+}
+
+/// A map in blocks: neutral and difference textures, with their mip levels.
+void writeBlockMap(const MapSolution& solution, const PackageMap& described, const std::filesystem::path& directory,
+                   int band_rows, BandBuffers& buffers, const Run& run) {
+  const OpenMap& map = *solution.map.map;
+  const int width = described.width;
+  const auto open = [&](const std::string& file, BlockFormat format) {
+    return std::make_unique<blocks::MippedTextureWriter>(run.context, directory / file, width, described.height,
+                                                         mipOptions(format, described.channels));
+  };
+  const auto neutral = open(described.neutral_file, solution.neutral->format);
+  std::vector<std::unique_ptr<blocks::MippedTextureWriter>> differences;
+  for (const PackageDifference& difference : described.differences) {
+    differences.push_back(open(difference.file, *difference.format));
+  }
+  const auto write = [&](const MapBand& band) {
+    solution.block_textures->compute(solution.map, band);
+    const std::vector<float> coverage = coverageRows(*map.classes, band.begin, band.end);
+    const int rows = band.end - band.begin;
+    neutral->append(rows, solution.neutral->rows(band.begin, band.end), coverage);
+    for (std::size_t i = 0; i < differences.size(); ++i) {
+      differences[i]->append(rows, solution.block_textures->blocks(static_cast<int>(i)), coverage);
+    }
+  };
+  const auto make_tiles = [&](int begin, int end) { return solution.block_textures->tiles(map, begin, end); };
+  DecodedNeutral decoded(*solution.neutral);
+  forEachMapBand(*map.samples, band_rows, buffers, make_tiles, fmt::format("writing: {}", map.source->name),
+                 run.progress, write, [&](int begin, int end) { return decoded.rows(begin, end); });
+  neutral->close();
+  for (const auto& difference : differences) difference->close();
+}
+
 }  // namespace
 
 void writePackageFiles(const PackageSolution& solution, const std::filesystem::path& directory, int band_rows,
@@ -110,7 +152,11 @@ void writePackageFiles(const PackageSolution& solution, const std::filesystem::p
   }
   BandBuffers buffers(run.context);
   for (std::size_t m = 0; m < solution.maps.size(); ++m) {
-    writeMap(solution.maps[m], static_cast<int>(m), solution.differences, band_rows, buffers, writer, run);
+    if (solution.maps[m].neutral != nullptr) {
+      writeBlockMap(solution.maps[m], writer.description().maps[m], directory, band_rows, buffers, run);
+    } else {
+      writeMap(solution.maps[m], static_cast<int>(m), solution.differences, band_rows, buffers, writer, run);
+    }
   }
   weights.wait();
   image::writeImage(directory / package::kMasksFile, solution.guides.picture);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compress/bands/map_set.hpp"
+#include "compress/codes/coded_neutral.hpp"
 #include "compress/codes/map_codes.hpp"
 #include "compress/face_guides.hpp"
 #include "compress/refine/grid_weights.hpp"
@@ -21,7 +22,11 @@ struct MapSolution {
   GridMap map;
   int weight_set = 0;
   MapCodes codes;
-  std::unique_ptr<TextureSource> textures;  ///< of difference textures; may refer to `codes`, which then stay in place
+  /// Of difference textures as images; may refer to `codes`, which then stay in place.
+  std::unique_ptr<TextureSource> textures;
+  /// Instead, of a map in blocks: its neutral and its difference textures.
+  const CodedNeutral* neutral = nullptr;
+  std::unique_ptr<BlockTextures> block_textures;
 };
 
 /// What a package is written from, but for the texels.

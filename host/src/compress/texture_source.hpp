@@ -7,6 +7,7 @@
 
 #include "compress/bands/map_bands.hpp"
 #include "compress/bands/map_set.hpp"
+#include "compress/codes/coded_textures.hpp"
 #include "compress/codes/map_codes.hpp"
 #include "compress/refine/difference_fit.hpp"
 #include "compress/refine/grid_weights.hpp"
@@ -42,8 +43,19 @@ class ClusterTextures : public TextureSource {
   DifferenceTextures textures_;
 };
 
+/// What textures that were fitted leave.
+class MeasuredTextures {
+ public:
+  /// Squared error over the covered texels of all bands so far, in (1/255)^2, before frames are rounded.
+  double squaredError() const { return squared_error_; }
+
+ protected:
+  ~MeasuredTextures() = default;
+  double squared_error_ = 0.0;
+};
+
 /// The textures that suit the weights as they are decoded, rounded to their codes (difference_fit.hpp).
-class FittedTextures : public TextureSource {
+class FittedTextures final : public TextureSource, public MeasuredTextures {
  public:
   /// weights, codes  are kept by reference; the codes are the map's
   FittedTextures(device::DeviceContext& context, const WeightSpace& space, const EncodedWeights& weights,
@@ -51,16 +63,31 @@ class FittedTextures : public TextureSource {
   TileMasks tiles(const OpenMap& map, int begin, int end) const override;
   const cl::Buffer& compute(const GridMap& map, const MapBand& band) override;
 
-  /// Squared error over the covered texels of all bands so far, in (1/255)^2, before frames are rounded.
-  double squaredError() const { return squared_error_; }
-
  private:
   const EncodedWeights& weights_;
   const MapCodes& codes_;
   float ridge_;
   WeightWindow window_;
   DifferenceFit fit_;
-  double squared_error_ = 0.0;
+};
+
+/// The textures in blocks that suit the weights as they are decoded (coded_textures.hpp).
+class BlockTextures final : public MeasuredTextures {
+ public:
+  /// weights  is kept by reference
+  BlockTextures(device::DeviceContext& context, const WeightSpace& space, const EncodedWeights& weights,
+                const MapCodes& codes, int channels);
+  TileMasks tiles(const OpenMap& map, int begin, int end) const;
+  /// Fits and codes a band whose differences are to the decoded neutral; rows as CodedTextures::compute() wants them.
+  void compute(const GridMap& map, const MapBand& band);
+  /// Blocks of a texture of that band.
+  std::span<const std::byte> blocks(int texture) const { return textures_.blocks(texture); }
+
+ private:
+  const EncodedWeights& weights_;
+  float ridge_;
+  WeightWindow window_;
+  CodedTextures textures_;
 };
 
 }  // namespace facezip::compress

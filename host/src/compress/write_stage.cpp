@@ -20,11 +20,20 @@ int bitsOf(const PackageForm& form, const WeightSpace& space, const GridMap& map
 
 }  // namespace
 
+bool inBlocks(const PackageForm& form, const GridMap& map) {
+  return form.blocks && map.map->samples->shape().type == SampleType::kUint8;
+}
+
 std::vector<MapCodes> codesOf(const PackageForm& form, const WeightSpace& space, std::span<const GridMap> group,
                               const FittedWeights& fitted, const CoveredFace& face) {
   std::vector<MapCodes> codes;
   for (std::size_t m = 0; m < group.size(); ++m) {
-    codes.push_back(codesOfBits(fitted.ranges[m], bitsOf(form, space, group[m], m, fitted, face)));
+    if (inBlocks(form, group[m])) {
+      const BlockFormat format = formatFor(form.blocks->differences, group[m].map->samples->shape().channels);
+      codes.push_back(codesOfBlocks(fitted.ranges[m], format, form.differences));
+    } else {
+      codes.push_back(codesOfBits(fitted.ranges[m], bitsOf(form, space, group[m], m, fitted, face)));
+    }
   }
   return codes;
 }
@@ -51,7 +60,7 @@ std::vector<std::optional<double>> writePackage(const PackageContent& content, c
   PackageSolution solution{content.capture, content.form.differences, {}, {}, content.method_json, content.has_mesh,
                            content.guides};
   solution.maps.resize(content.face.texels.size());
-  std::vector<const FittedTextures*> fitted_textures(solution.maps.size(), nullptr);
+  std::vector<const MeasuredTextures*> measured(solution.maps.size(), nullptr);
   for (std::size_t g = 0; g < content.groups.size(); ++g) {
     const std::vector<GridMap>& group = content.groups[g];
     const FittedWeights& fitted = content.fitted[g];
@@ -62,18 +71,23 @@ std::vector<std::optional<double>> writePackage(const PackageContent& content, c
       map.map = group[m];
       map.weight_set = static_cast<int>(g);
       map.codes = std::move(codes[m]);
-      if (content.direct_textures) {
+      if (inBlocks(content.form, group[m])) {
+        map.neutral = &*fitted.neutrals[m];
+        map.block_textures = std::make_unique<BlockTextures>(run.context, content.space, fitted.weights, map.codes,
+                                                             group[m].map->samples->shape().channels);
+        measured[group[m].index] = map.block_textures.get();
+      } else if (content.direct_textures) {
         map.textures = content.direct_textures(g);
-        continue;
+      } else {
+        auto textures = std::make_unique<FittedTextures>(run.context, content.space, fitted.weights, map.codes);
+        measured[group[m].index] = textures.get();
+        map.textures = std::move(textures);
       }
-      auto textures = std::make_unique<FittedTextures>(run.context, content.space, fitted.weights, map.codes);
-      fitted_textures[group[m].index] = textures.get();
-      map.textures = std::move(textures);
     }
   }
   writePackageFiles(solution, directory, band_rows, run);
   std::vector<std::optional<double>> errors;
-  for (const FittedTextures* textures : fitted_textures) {
+  for (const MeasuredTextures* textures : measured) {
     errors.push_back(textures == nullptr ? std::nullopt : std::optional(textures->squaredError()));
   }
   run.clock.book("writing");

@@ -25,6 +25,9 @@ struct CoveredFace {
   std::span<const std::uint64_t> texels;  ///< of every map: how many are covered
 };
 
+/// Whether the textures of a map are written in blocks.
+bool inBlocks(const PackageForm& form, const GridMap& map);
+
 /// The codes of every map of a group, in the group's order.
 std::vector<MapCodes> codesOf(const PackageForm& form, const WeightSpace& space, std::span<const GridMap> group,
                               const FittedWeights& fitted, const CoveredFace& face);

@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "device/device_context.hpp"
+#include "device/pocl_cache.hpp"
+#include "facezip/printable.hpp"
 
 namespace facezip {
 namespace {
@@ -41,6 +43,7 @@ DeviceInfo describe(const cl::Platform& platform, const cl::Device& device, std:
 }
 
 std::vector<FoundDevice> findDevices() {
+  device::givePoclAPlace();
   std::vector<cl::Platform> platforms;
   try {
     cl::Platform::get(&platforms);
@@ -62,6 +65,22 @@ std::vector<FoundDevice> findDevices() {
   return found;
 }
 
+constexpr const char* kPocl = "Portable Computing Language";
+
+/// Why there is no device where there could be one, a sentence; else empty.
+std::string reasonForNone() {
+  std::vector<cl::Platform> platforms;
+  try {
+    cl::Platform::get(&platforms);
+  } catch (const cl::Error&) {
+    return "";
+  }
+  const bool pocl = std::any_of(platforms.begin(), platforms.end(), [](const cl::Platform& platform) {
+    return platform.getInfo<CL_PLATFORM_NAME>() == kPocl;
+  });
+  return pocl ? device::poclCacheFault() : "";
+}
+
 std::string lowerCase(std::string_view text) {
   std::string lower(text);
   std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -74,7 +93,7 @@ bool matches(const DeviceInfo& info, const std::string& selector) {
   if (selector == "gpu") return info.type == DeviceInfo::Type::kGpu;
   if (selector == "cpu") return info.type == DeviceInfo::Type::kCpu;
   // Everybody calls it PoCL; the platform does not.
-  if (selector == "pocl") return info.platform == "Portable Computing Language";
+  if (selector == "pocl") return info.platform == kPocl;
   return lowerCase(info.name).find(selector) != std::string::npos ||
          lowerCase(info.platform).find(selector) != std::string::npos;
 }
@@ -103,6 +122,10 @@ DeviceError::DeviceError(const std::string& call, int code, const std::string& d
 std::vector<DeviceInfo> listDevices() {
   std::vector<DeviceInfo> infos;
   for (const FoundDevice& found : findDevices()) infos.push_back(found.info);
+  if (!infos.empty()) return infos;
+  if (const std::string fault = reasonForNone(); !fault.empty()) {
+    throw DeviceError("listing OpenCL devices", 0, fault);
+  }
   return infos;
 }
 
@@ -111,16 +134,19 @@ const DeviceInfo& Device::info() const { return context_->info(); }
 Device openDevice(std::string_view selector, Progress* progress) {
   const std::vector<FoundDevice> found = findDevices();
   if (found.empty()) {
+    const std::string fault = reasonForNone();
     throw DeviceError("opening an OpenCL device", 0,
-                      "no OpenCL device found; install the vendor's driver or PoCL (Debian: pocl-opencl-icd), then see "
-                      "`facezip devices`");
+                      !fault.empty() ? fault
+                                     : "no OpenCL device found; install the vendor's driver or PoCL (Debian: "
+                                       "pocl-opencl-icd), then see `facezip devices`");
   }
   std::optional<FoundDevice> chosen = choose(found, lowerCase(selector));
   if (!chosen) {
     std::string available;
     for (const FoundDevice& f : found)
       available += fmt::format("\n  {}  {} ({})", f.info.selector, f.info.name, f.info.platform);
-    throw DeviceError(fmt::format("--device {}", selector), 0, fmt::format("no such device; there are:{}", available));
+    throw DeviceError(fmt::format("--device {}", printable(selector)), 0,
+                      fmt::format("no such device; there are:{}", available));
   }
   return Device(std::make_shared<device::DeviceContext>(std::move(chosen->device), std::move(chosen->info), progress));
 }

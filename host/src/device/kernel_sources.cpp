@@ -4,11 +4,10 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <set>
 
 #include "facezip/device.hpp"
+#include "io/read_file.hpp"
 
 namespace facezip::device {
 namespace {
@@ -19,8 +18,9 @@ std::string textOf(std::string_view name) {
     if (!std::filesystem::is_directory(folder)) {
       throw InputError({"FACEZIP_KERNEL_DIR", "", "a folder with kernel files", folder, "unset it for those built in"});
     }
-    std::ifstream file(std::filesystem::path(folder) / name);
-    if (file) return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    const std::filesystem::path file = std::filesystem::path(folder) / name;
+    std::error_code error;
+    if (std::filesystem::exists(file, error)) return io::readFile(file, "a kernel file");
   }
   const auto& embedded = embeddedKernelSources();
   const auto found = embedded.find(name);

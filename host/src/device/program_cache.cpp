@@ -1,14 +1,15 @@
 #include "device/program_cache.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <atomic>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <system_error>
+
+#include "facezip/error.hpp"
+#include "io/read_file.hpp"
+#include "io/write_file.hpp"
 
 namespace facezip::device {
 namespace fs = std::filesystem;
@@ -31,7 +32,7 @@ std::uint64_t hashOf(const Bytes& bytes) {
   return hash;
 }
 
-/// An entry under a name of this thread's own, for renaming.
+/// Throws std::exception where it cannot all be written.
 void writeFile(const fs::path& file, std::string_view key, const std::vector<unsigned char>& binary) {
   Header header{{}, key.size(), binary.size(), hashOf(binary)};
   std::memcpy(header.magic, kMagic, sizeof(kMagic));
@@ -63,41 +64,36 @@ fs::path ProgramCache::fileOf(std::string_view key) const {
 
 std::optional<std::vector<unsigned char>> ProgramCache::find(std::string_view key) const {
   if (folder_.empty()) return std::nullopt;
-  std::ifstream stream(fileOf(key), std::ios::binary | std::ios::ate);
-  const std::streamoff file_bytes = stream.tellg();
-  stream.seekg(0);
+  std::string file;
+  try {
+    file = io::readFile(fileOf(key), "a compiled kernel");
+  } catch (const InputError&) {
+    return std::nullopt;  // not there yet
+  }
   Header header;
-  if (!stream.read(reinterpret_cast<char*>(&header), sizeof(header))) return std::nullopt;
+  if (file.size() < sizeof(header) + key.size()) return std::nullopt;
+  std::memcpy(&header, file.data(), sizeof(header));
+  const std::string_view rest = std::string_view(file).substr(sizeof(header));
   // Sizes of a damaged file may be anything: they are believed only when they add up.
-  const auto rest = static_cast<std::uint64_t>(file_bytes) - sizeof(header);
-  if (std::memcmp(header.magic, kMagic, sizeof(kMagic)) != 0 || header.key_bytes != key.size() || rest < key.size() ||
-      header.binary_bytes != rest - key.size()) {
+  if (std::memcmp(header.magic, kMagic, sizeof(kMagic)) != 0 || header.key_bytes != key.size() ||
+      header.binary_bytes != rest.size() - key.size() || rest.substr(0, key.size()) != key) {
     return std::nullopt;
   }
-  std::string kept_key(key.size(), '\0');
-  std::vector<unsigned char> binary(header.binary_bytes);
-  stream.read(kept_key.data(), static_cast<std::streamsize>(kept_key.size()));
-  if (!stream.read(reinterpret_cast<char*>(binary.data()), static_cast<std::streamsize>(binary.size()))) {
-    return std::nullopt;
-  }
-  if (kept_key != key || hashOf(binary) != header.checksum) return std::nullopt;
-  return binary;
+  const std::string_view binary = rest.substr(key.size());
+  if (hashOf(binary) != header.checksum) return std::nullopt;
+  return std::vector<unsigned char>(binary.begin(), binary.end());
 }
 
 void ProgramCache::store(std::string_view key, const std::vector<unsigned char>& binary) const noexcept {
   if (folder_.empty() || binary.empty()) return;
-  static std::atomic<unsigned> count = 0;
-  fs::path partial;
-  std::error_code error;
   try {
     // What is in it will be run: nobody else may write there.
     if (fs::create_directories(folder_)) fs::permissions(folder_, fs::perms::owner_all);
-    const fs::path file = fileOf(key);
-    partial = folder_ / fmt::format(".partial-{}-{}", ::getpid(), count++);
-    writeFile(partial, key, binary);
-    fs::rename(partial, file);
+    io::StagedFile staged(fileOf(key), nullptr, io::Durability::kKernel);
+    writeFile(staged.path(), key, binary);
+    staged.commit();
   } catch (const std::exception&) {
-    fs::remove(partial, error);  // a full or read-only disk: the next process compiles again
+    // A full or read-only disk: the next process compiles again.
   }
 }
 

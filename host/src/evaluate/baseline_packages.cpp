@@ -1,10 +1,7 @@
 #include "evaluate/baseline_packages.hpp"
 
-#include <filesystem>
-
 namespace facezip::evaluate {
 namespace {
-namespace fs = std::filesystem;
 
 /// Puts a label before every stage.
 class LabelledProgress : public Progress {
@@ -27,11 +24,10 @@ class LabelledProgress : public Progress {
 }  // namespace
 
 TemporaryPackage::TemporaryPackage(const Capture& capture, const CompressOptions& options, const std::string& label,
-                                   const Device& device, Progress& progress)
-    : staged_(fs::temp_directory_path() / "facezip-baseline") {
+                                   const Device& device, Progress& progress) {
   LabelledProgress labelled(label, progress);
-  report_ = compressCapture(capture, staged_.path() / "package", options, device, labelled);
-  package_ = std::make_unique<Package>(Package::open(staged_.path() / "package"));
+  report_ = compressCapture(capture, scratch_.path() / "package", options, device, labelled);
+  package_ = std::make_unique<Package>(Package::open(scratch_.path() / "package"));
 }
 
 }  // namespace facezip::evaluate

@@ -6,7 +6,7 @@
 
 #include "facezip/compress.hpp"
 #include "facezip/package.hpp"
-#include "io/staged_directory.hpp"
+#include "io/scratch_directory.hpp"
 
 namespace facezip::evaluate {
 
@@ -21,7 +21,7 @@ class TemporaryPackage {
   const CompressReport& report() const { return report_; }
 
  private:
-  io::StagedDirectory staged_;  // never committed: the destructor removes it
+  io::ScratchDirectory scratch_;
   CompressReport report_;
   std::unique_ptr<Package> package_;
 };

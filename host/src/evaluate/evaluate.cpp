@@ -7,6 +7,7 @@
 #include "evaluate/ablation.hpp"
 #include "evaluate/blend_error.hpp"
 #include "evaluate/candidates.hpp"
+#include "evaluate/every_texture.hpp"
 #include "evaluate/map_evaluation.hpp"
 #include "evaluate/subject.hpp"
 
@@ -32,6 +33,10 @@ void countBytes(const Package& package, const Candidates& candidates, const Subj
     evaluation.bytes[candidate.key] = candidate.decoder->package().bytesInMemory();
   }
   for (const std::string& key : candidates.own_keys) evaluation.bytes[key] = package.bytesInMemory();
+  for (const BlockFormat format : options.every_texture) {
+    std::uint64_t& bytes = evaluation.bytes[everyTextureKey(format)];
+    for (const PackageMap& map : package.maps()) bytes += everyTextureBytes(map, format, subject.expressions());
+  }
   evaluation.bytes["package_disk"] = package.bytesOnDisk();
   if (!options.ablation) return;
   for (const int components : {1, 2, 3, 4, 8}) evaluation.ablation_bytes["pca"][components] = pca(components);
@@ -48,6 +53,11 @@ void evaluateMaps(const Package& package, const Subject& subject, const Evaluate
     MapEvaluation found =
         evaluateMap(maps.maps[m], static_cast<int>(m), candidates, subject, options, evaluation.blend_weights, buffers);
     if (m == 0) evaluation.covered_texels = found.covered_texels;
+    for (const BlockFormat format : options.every_texture) {
+      if (auto errors = everyTextureErrors(maps.maps[m], format, subject)) {
+        found.map.rmse[everyTextureKey(format)] = std::move(*errors);
+      }
+    }
     evaluation.maps.push_back(std::move(found.map));
     if (found.pictures) evaluation.pictures.push_back(std::move(*found.pictures));
   }

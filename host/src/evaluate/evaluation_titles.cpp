@@ -1,3 +1,5 @@
+#include "blocks/block_format.hpp"
+#include "evaluate/every_texture.hpp"
 #include "facezip/evaluate.hpp"
 
 namespace facezip {
@@ -18,6 +20,9 @@ const std::vector<std::pair<std::string, std::string>>& evaluationTitles() {
     std::vector<std::pair<std::string, std::string>> all = {{"package", "package"}, {"rig", "rig's shapes"}};
     for (const auto& method : namesOf<Method>()) all.emplace_back(method.name, method.title);
     for (const auto& baseline : namesOf<Baseline>()) all.emplace_back(baseline.name, baseline.title);
+    for (const blocks::BlockFormatInfo& format : blocks::blockFormats()) {
+      all.emplace_back(evaluate::everyTextureKey(format.format), "all in " + std::string(format.name));
+    }
     all.emplace_back("pca", "PCA(C)");  // of an ablation
     return all;
   }();

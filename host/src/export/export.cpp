@@ -112,7 +112,8 @@ std::vector<std::string> exportPackage(const Package& package, const std::string
     throw InputError({package.directory().string(), "mesh", "a package with meshes", "none",
                       "compress the capture again, without --no-mesh"});
   }
-  io::StagedDirectory staged(output, {"scene.gltf", "\"generator\": \"facezip "});
+  inputsOf(package).requireApartFromFolder(output);
+  io::StagedDirectory staged(output, {"scene.gltf", "\"generator\": \"facezip "}, &progress);
   const Target& chosen = found->second;
   if (chosen.write != nullptr) {
     chosen.write(package, staged.path(), progress);

@@ -64,22 +64,22 @@ std::unique_ptr<OIIO::ImageInput> openInput(const fs::path& path, const std::str
   // As OpenImageIO does with names: the reader of the extension first, since some formats cannot be told by what they
   // hold, then whichever knows the content.
   const std::string extension = path.extension().string();
+  const auto refuse = [&](const std::string& text) {
+    throw InputError({path.string(), "", "an image that OpenImageIO reads",
+                      replaced(reason(text), open_name, path.filename().string()),
+                      "export it again, as PNG, TIFF or EXR"});
+  };
   std::unique_ptr<OIIO::ImageInput> input;
-  std::string failure;
   if (extension.size() > 1) input = OIIO::ImageInput::create(extension.substr(1), /*do_open=*/false);
-  if (input) {
+  if (input && input->valid_file(open_name)) {
     OIIO::ImageSpec ignored;
-    if (input->open(open_name, ignored, config)) return input;
-    failure = input->geterror();
+    if (!input->open(open_name, ignored, config)) refuse(input->geterror());
+    return input;
   }
   static_cast<void>(OIIO::geterror());  // of an extension that names no format
   input = OIIO::ImageInput::open(open_name, &config);
-  if (input) return input;
-  const std::string of_content = OIIO::geterror();
-  if (failure.empty()) failure = of_content;
-  throw InputError({path.string(), "", "an image that OpenImageIO reads",
-                    replaced(reason(failure), open_name, path.filename().string()),
-                    "export it again, as PNG, TIFF or EXR"});
+  if (!input) refuse(OIIO::geterror());
+  return input;
 }
 
 std::string openName(const InputFile& file) { return fmt::format("/proc/self/fd/{}", file.descriptor()); }

@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "facezip/error.hpp"
+#include "io/file_at.hpp"
 
 namespace facezip::image {
 namespace fs = std::filesystem;
@@ -23,25 +24,13 @@ ScratchFile::ScratchFile(const fs::path& directory) : directory_(directory) {
 ScratchFile::~ScratchFile() { ::close(descriptor_); }
 
 void ScratchFile::write(std::size_t offset, std::span<const std::byte> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0)
-      throw OutputError(directory_, fmt::format("scratch file: {}", std::strerror(errno)), "free some space");
-    offset += static_cast<std::size_t>(written);
-    bytes = bytes.subspan(static_cast<std::size_t>(written));
-  }
+  const std::string fault = io::writeAt(descriptor_, offset, bytes);
+  if (!fault.empty()) throw OutputError(directory_, fmt::format("scratch file: {}", fault), "free some space");
 }
 
 void ScratchFile::read(std::size_t offset, std::span<std::byte> bytes) const {
-  while (!bytes.empty()) {
-    const ssize_t got = ::pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0)
-      throw OutputError(directory_, fmt::format("scratch file: {}", got == 0 ? "cut short" : std::strerror(errno)));
-    offset += static_cast<std::size_t>(got);
-    bytes = bytes.subspan(static_cast<std::size_t>(got));
-  }
+  const std::string fault = io::readAt(descriptor_, offset, bytes);
+  if (!fault.empty()) throw OutputError(directory_, fmt::format("scratch file: {}", fault));
 }
 
 std::size_t ScratchFile::freeBytes(const fs::path& directory) {

@@ -4,23 +4,20 @@
 #include <fmt/format.h>
 #include <stdio.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <system_error>
 #include <utility>
 
 #include "facezip/error.hpp"
+#include "io/durable.hpp"
 #include "io/read_file.hpp"
 
 namespace facezip::io {
 namespace fs = std::filesystem;
 namespace {
-
-std::string errnoText() { return std::strerror(errno); }
 
 fs::path absoluteTarget(const fs::path& target) {
   if (target.empty()) throw InputError({"--output", "", "a name", "an empty one", ""});
@@ -79,16 +76,33 @@ void requireMarker(const fs::path& target, const Footprint& own) {
       "choose another --output");
 }
 
-/// Swaps two directories in one step where the file system can, so that a reader never finds `target` missing.
-bool exchange(const fs::path& a, const fs::path& b) {
-  return ::renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0;
+/// Renames a directory in one step, so that a reader never finds `to` missing. Returns the system's error, 0 for none.
+/// flags  RENAME_EXCHANGE: each gets the other's name; RENAME_NOREPLACE: nothing may stand at `to`
+int renameInOneStep(const fs::path& from, const fs::path& to, unsigned flags) {
+  return ::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), flags) == 0 ? 0 : errno;
+}
+
+/// Does this file system, or kernel, not know the flags?
+bool isUnsupported(int error) { return error == EINVAL || error == ENOSYS || error == ENOTSUP; }
+
+std::optional<std::pair<std::uint64_t, std::uint64_t>> identityOf(const fs::path& directory) {
+  struct stat status {};
+  if (::stat(directory.c_str(), &status) != 0) return std::nullopt;
+  return std::pair(std::uint64_t{status.st_dev}, std::uint64_t{status.st_ino});
+}
+
+OutputError replacedMeanwhile(const fs::path& target) {
+  return {target, "another run put its output there while this one was at work; that one stays",
+          "run this again to replace it, or choose another --output"};
 }
 
 }  // namespace
 
-StagedDirectory::StagedDirectory(fs::path target, Footprint own) : target_(directoryOf(target)), own_(std::move(own)) {
+StagedDirectory::StagedDirectory(fs::path target, Footprint own, Progress* progress)
+    : target_(directoryOf(target)), own_(std::move(own)) {
+  lookAtTarget(progress);
   std::error_code error;
-  if (fs::exists(target_, error) && !fs::is_empty(target_, error)) {
+  if (found_ && !fs::is_empty(target_, error)) {
     requireMarker(target_, *own_);
     if (own_->files) {
       own_files_ = own_->files(target_);
@@ -98,19 +112,21 @@ StagedDirectory::StagedDirectory(fs::path target, Footprint own) : target_(direc
   makeStaging();
 }
 
-StagedDirectory::StagedDirectory(fs::path target) : target_(directoryOf(target)) { makeStaging(); }
+StagedDirectory::StagedDirectory(fs::path target, Progress* progress) : target_(directoryOf(target)) {
+  lookAtTarget(progress);
+  makeStaging();
+}
+
+void StagedDirectory::lookAtTarget(Progress* progress) {
+  createDirectories(target_.parent_path());
+  removeLeftovers(target_, progress);
+  found_ = identityOf(target_);
+}
 
 void StagedDirectory::makeStaging() {
-  createDirectories(target_.parent_path());
-  // Not mkdtemp(), which makes directories private: this one is published.
-  for (int attempt = 0; staging_.empty(); ++attempt) {
-    const std::string name = fmt::format(".{}.partial-{}-{}", target_.filename().string(), ::getpid(), attempt);
-    if (::mkdir((target_.parent_path() / name).c_str(), 0777) == 0) {
-      staging_ = target_.parent_path() / name;
-    } else if (errno != EEXIST) {
-      throw OutputError(target_, errnoText());
-    }
-  }
+  UnfinishedFolder folder = makeUnfinishedFolder(target_);
+  staging_ = std::move(folder.path);
+  lock_ = std::move(folder.lock);
 }
 
 bool StagedDirectory::isOwn(const fs::path& relative) const {
@@ -136,6 +152,7 @@ void StagedDirectory::keepCompanions() const {
   forEachFile(target_, [&](const fs::path& file) {
     if (!isCompanion(file) || !fs::exists(staging_ / fs::path(file).replace_extension())) return;
     fs::copy_file(target_ / file, staging_ / file, fs::copy_options::skip_existing);
+    syncFile(staging_ / file);
   });
 }
 
@@ -154,29 +171,77 @@ void StagedDirectory::clear() {
 
 void StagedDirectory::commit() {
   try {
+    syncTree(staging_);
     if (own_) {
       replaceTarget();
     } else {
       mergeIntoTarget();
     }
+    syncFolder(target_.parent_path());
   } catch (const fs::filesystem_error& error) {
     throw OutputError(target_, error.code().message());
   }
 }
 
+void StagedDirectory::requireAsFound() const {
+  if (identityOf(target_) != found_) throw replacedMeanwhile(target_);
+}
+
 void StagedDirectory::replaceTarget() {
-  std::error_code error;
-  if (fs::exists(target_, error)) {
-    requireNoStrangers();
-    keepCompanions();
-    if (exchange(staging_, target_)) return;  // the destructor removes the old directory, now under the staging name
-    fs::remove_all(target_, error);
+  requireAsFound();
+  if (!found_) return moveIn();
+  requireNoStrangers();
+  keepCompanions();
+  swapIn();
+}
+
+/// Where nothing stood.
+void StagedDirectory::moveIn() {
+  int error = renameInOneStep(staging_, target_, RENAME_NOREPLACE);
+  if (isUnsupported(error)) error = renameInOneStep(staging_, target_, 0);
+  if (error == EEXIST || error == ENOTEMPTY) throw replacedMeanwhile(target_);
+  if (error != 0) throw OutputError(target_, std::strerror(error));
+}
+
+/// Where a directory of ours stood, or an empty one.
+void StagedDirectory::swapIn() {
+  const int error = renameInOneStep(staging_, target_, RENAME_EXCHANGE);
+  if (error == 0) {
+    // The destructor removes the old directory, now under the staging name.
+    if (identityOf(staging_) == found_) return;
+    renameInOneStep(staging_, target_, RENAME_EXCHANGE);  // another run was faster by a hair
+    throw replacedMeanwhile(target_);
   }
-  fs::rename(staging_, target_, error);
-  if (error) throw OutputError(target_, error.message());
+  if (!isUnsupported(error)) throw OutputError(target_, std::strerror(error));
+  // A run that is killed between these steps leaves the old directory for the next run to bring back.
+  int ignored = 0;
+  const auto lock = WriteLock::take(target_, WriteLock::Of::kFolder, ignored);
+  const fs::path old = replacedName(target_);
+  fs::remove_all(old);
+  fs::rename(target_, old);
+  fs::rename(staging_, target_);
+  fs::remove_all(old);
+}
+
+/// Before any file is moved.
+void StagedDirectory::requireRoomForMerge() const {
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(staging_)) {
+    const fs::path destination = target_ / entry.path().lexically_relative(staging_);
+    std::error_code error;
+    const fs::file_status there =
+        entry.is_directory() ? fs::status(destination, error) : fs::symlink_status(destination, error);
+    if (!fs::exists(there)) continue;
+    if (entry.is_directory() && !fs::is_directory(there)) {
+      throw OutputError(destination, "something that is no folder is in the way", "choose another --output");
+    }
+    if (!entry.is_directory() && fs::is_directory(there)) {
+      throw OutputError(destination, "a folder is in the way", "choose another --output");
+    }
+  }
 }
 
 void StagedDirectory::mergeIntoTarget() {
+  requireRoomForMerge();
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(staging_)) {
     const fs::path destination = target_ / entry.path().lexically_relative(staging_);
     if (entry.is_directory()) {
@@ -189,49 +254,10 @@ void StagedDirectory::mergeIntoTarget() {
     if (error) throw OutputError(destination, error.message());
   }
   createDirectories(target_);
-}
-
-void createDirectories(const fs::path& path) {
-  std::error_code error;
-  fs::create_directories(path, error);
-  if (error) throw OutputError(path, error.message(), "choose another --output");
-}
-
-void writeTextFile(const fs::path& path, const std::string& text) {
-  errno = 0;
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw OutputError(path, errno != 0 ? errnoText() : "write failed");
-}
-
-fs::path fileToReplace(const fs::path& path) {
-  std::error_code error;
-  const fs::path absolute = absoluteTarget(path);
-  const fs::file_status status = fs::status(absolute, error);
-  if (fs::exists(status) && !fs::is_regular_file(status)) return {};
-  return fs::is_symlink(fs::symlink_status(absolute, error)) ? fs::weakly_canonical(absolute) : absolute;
-}
-
-void requireOutside(const fs::path& path, const fs::path& folder, const std::string& what) {
-  const fs::path inner = withoutTrailingSlash(fs::weakly_canonical(absoluteTarget(path)));
-  if (!isWithin(inner, withoutTrailingSlash(fs::weakly_canonical(folder)))) return;
-  throw OutputError(path, fmt::format("it lies in {}, {}", folder.string(), what), "choose another --output");
-}
-
-void writeTextFileAtomically(const fs::path& path, const std::string& text) {
-  const fs::path target = fileToReplace(path);
-  if (target.empty()) return writeTextFile(path, text);  // /dev/stdout, a pipe; a directory says so itself
-  const fs::path partial = target.parent_path() / fmt::format(".{}.partial-{}", target.filename().string(), ::getpid());
-  std::error_code error;
-  try {
-    writeTextFile(partial, text);
-    fs::rename(partial, target, error);
-    if (error) throw OutputError(path, error.message());
-  } catch (const OutputError& failure) {
-    fs::remove(partial, error);
-    throw OutputError(path, failure.what());
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(staging_)) {
+    if (entry.is_directory()) syncFolder(target_ / entry.path().lexically_relative(staging_));
   }
+  syncFolder(target_);
 }
 
 }  // namespace facezip::io

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string_view>
 
+#include "facezip/printable.hpp"
 #include "package/package_json.hpp"
 
 namespace facezip::package {
@@ -145,13 +148,10 @@ class Limits : public nlohmann::json_sax<json> {
 
 std::string quoted(const std::string& text) {
   constexpr std::size_t kLongest = 80;
-  std::string shown;
-  for (const char c : text.substr(0, kLongest)) {
-    const bool control = static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
-    shown +=
-        control ? fmt::format("\\x{:02x}", static_cast<unsigned>(static_cast<unsigned char>(c))) : std::string(1, c);
-  }
-  return fmt::format("\"{}{}\"", shown, text.size() > kLongest ? "..." : "");
+  std::size_t length = std::min(kLongest, text.size());
+  while (length > 0 && length < text.size() && (static_cast<unsigned char>(text[length]) & 0xc0u) == 0x80u) --length;
+  return fmt::format("\"{}{}\"", printable(std::string_view(text).substr(0, length)),
+                     text.size() > kLongest ? "..." : "");
 }
 
 json parseJson(const std::string& text, const std::string& file, const std::string& cure) {

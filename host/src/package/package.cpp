@@ -12,6 +12,7 @@
 #include "package/guides.hpp"
 #include "package/package_files.hpp"
 #include "package/package_json.hpp"
+#include "package/package_textures.hpp"
 
 namespace facezip {
 namespace fs = std::filesystem;
@@ -44,9 +45,13 @@ Package Package::openOnce(const fs::path& directory) {
   package.directory_ = directory;
   const std::string text = package.folder_->open(package::kDescriptionFile, kWhatItIs, kCure).read(kLargestDescription);
   package.description_ = package::parsePackageJson(text, (directory / package::kDescriptionFile).string());
-  package.bytes_on_disk_ = text.size() + package::checkImages(package.description_, *package.folder_) +
+  package.bytes_on_disk_ = text.size() + package::checkTextures(package.description_, *package.folder_) +
                            package::checkGuides(package.description_, *package.folder_);
   return package;
+}
+
+ProtectedPaths inputsOf(const Package& package) {
+  return ProtectedPaths().add(package.directory(), "the package that is read");
 }
 
 Package Package::open(const fs::path& directory) {
@@ -81,9 +86,8 @@ int Package::mapIndex(const std::string& map_name) const {
 std::uint64_t Package::bytesInMemory() const {
   std::uint64_t bytes = 0;
   for (const PackageMap& map : maps()) {
-    const std::uint64_t samples = map.frameBytes() / image::sampleBytes(map.sample_type);
-    const auto code_bytes = static_cast<std::uint64_t>(map.difference_bits / 8);
-    bytes += map.frameBytes() + samples * code_bytes * static_cast<std::uint64_t>(differences());
+    bytes += package::bytesInMemory(package::neutralTexture(map));
+    for (int i = 0; i < differences(); ++i) bytes += package::bytesInMemory(package::differenceTexture(map, i));
   }
   for (const PackageWeights& weights : weightSets()) {
     const std::uint64_t cells =

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "package/package_textures.hpp"
 #include "package/weight_atlas.hpp"
 
 namespace facezip::package {
@@ -76,7 +77,7 @@ image::ImageReader openImage(const io::Folder& folder, const std::string& file, 
   return reader;
 }
 
-std::uint64_t checkImages(const PackageDescription& description, const io::Folder& folder) {
+std::uint64_t checkTextures(const PackageDescription& description, const io::Folder& folder) {
   std::uint64_t bytes = 0;
   for (const PackageWeights& weights : description.weights) {
     for (std::size_t file = 0; file < weights.files.size(); ++file) {
@@ -85,10 +86,8 @@ std::uint64_t checkImages(const PackageDescription& description, const io::Folde
     }
   }
   for (const PackageMap& map : description.maps) {
-    bytes += checkImage(folder, map.neutral_file, neutralShape(map));
-    for (const PackageDifference& difference : map.differences) {
-      bytes += checkImage(folder, difference.file, differenceShape(map));
-    }
+    bytes += checkTexture(folder, neutralTexture(map));
+    for (int i = 0; i < description.differences; ++i) bytes += checkTexture(folder, differenceTexture(map, i));
   }
   return bytes;
 }

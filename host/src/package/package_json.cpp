@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "blocks/block_format.hpp"
 #include "package/guides.hpp"
 #include "package/json_field.hpp"
 #include "package/package_writer.hpp"
@@ -41,10 +42,18 @@ Document weightsJson(const PackageWeights& weights) {
           {"offset", weights.offset}};
 }
 
+Document textureJson(const std::string& file, const std::optional<BlockFormat>& format) {
+  Document texture = {{"file", file}};
+  if (format) texture["format"] = blockFormatName(*format);
+  return texture;
+}
+
 Document mapJson(const PackageMap& map) {
   Document differences = Document::array();
   for (const PackageDifference& difference : map.differences) {
-    differences.push_back({{"file", difference.file}, {"scale", difference.scale}, {"offset", difference.offset}});
+    Document& texture = differences.emplace_back(textureJson(difference.file, difference.format));
+    texture["scale"] = difference.scale;
+    texture["offset"] = difference.offset;
   }
   return {{"name", map.name},
           {"width", map.width},
@@ -55,7 +64,7 @@ Document mapJson(const PackageMap& map) {
           {"weights", map.weight_set},
           {"weight_scale", map.weight_scale},
           {"metric_weight", map.metric_weight},
-          {"neutral", {{"file", map.neutral_file}}},
+          {"neutral", textureJson(map.neutral_file, map.neutral_format)},
           {"difference_bits", map.difference_bits},
           {"differences", differences}};
 }
@@ -118,16 +127,41 @@ void requireExactZero(const JsonField& field, double scale, double offset, int l
              fmt::format("offset {} at scale {}", offset, scale));
 }
 
-PackageDifference parseDifference(const JsonField& field, int channels, int bits) {
-  const int largest_code = (1 << bits) - 1;
+/// The blocks that a texture of a map says that it has.
+std::optional<BlockFormat> parseFormat(const JsonField& field, const PackageMap& map) {
+  if (!field.has("format")) return std::nullopt;
+  const JsonField format = field["format"];
+  const std::string name = format.text();
+  const auto formats = blocks::blockFormats();
+  const auto found = std::ranges::find(formats, name, &blocks::BlockFormatInfo::name);
+  if (found == formats.end()) format.fail("one of " + blockFormatNames(), quoted(name));
+  if (map.channels > found->max_channels) {
+    format.fail(fmt::format("a format of {} channels", map.channels), format.got());
+  }
+  if (map.sample_type != SampleType::kUint8) format.fail("none: blocks hold maps of 8 bits", format.got());
+  return found->format;
+}
+
+PackageDifference parseDifference(const JsonField& field, const PackageMap& map) {
+  const int channels = map.channels;
+  const int largest_code = (1 << map.difference_bits) - 1;
   PackageDifference difference;
-  difference.file = fileInPackage(field["file"], ".png");
+  difference.format = parseFormat(field, map);
+  difference.file = fileInPackage(field["file"], difference.format ? ".ktx2" : ".png");
+  if (difference.format && map.difference_bits != 8) {
+    field["format"].fail("none beside difference_bits of 16: blocks hold codes of 8", field["format"].got());
+  }
   difference.scale = parseNumbers(field["scale"], channels, 0, kLargestCoefficient);
   difference.offset = parseNumbers(field["offset"], channels, -largest_code * kLargestCoefficient, 0);
   for (std::size_t c = 0; c < difference.scale.size(); ++c) {
     requireExactZero(field["offset"], difference.scale[c], difference.offset[c], largest_code);
   }
   return difference;
+}
+
+const char* neutralExtension(const PackageMap& map) {
+  if (map.neutral_format) return ".ktx2";
+  return map.sample_type == SampleType::kFloat32 ? ".exr" : ".png";
 }
 
 SampleType parseSampleType(const JsonField& field) {
@@ -159,11 +193,12 @@ PackageMap parseMap(const JsonField& field, const std::vector<PackageWeights>& w
   map.weight_set = field["weights"].integer(0, static_cast<int>(weight_sets.size()) - 1);
   map.weight_scale = field["weight_scale"].integer(1, kMaxSide);
   map.metric_weight = parseMetricWeight(field["metric_weight"]);
-  map.neutral_file = fileInPackage(field["neutral"]["file"], map.sample_type == SampleType::kFloat32 ? ".exr" : ".png");
+  map.neutral_format = parseFormat(field["neutral"], map);
+  map.neutral_file = fileInPackage(field["neutral"]["file"], neutralExtension(map));
   map.difference_bits = field["difference_bits"].oneOf(std::array{8, 16});
   const std::size_t count = static_cast<std::size_t>(differences);
   for (const JsonField& difference : field["differences"].elements(count, count)) {
-    map.differences.push_back(parseDifference(difference, map.channels, map.difference_bits));
+    map.differences.push_back(parseDifference(difference, map));
   }
   requireSameGrid(field, map, weight_sets[static_cast<std::size_t>(map.weight_set)]);
   return map;
@@ -185,10 +220,23 @@ void requireKnownVersion(const JsonField& document) {
     format.fail("\"facezip-package\"", format.got(), "is this a facezip package?");
   const JsonField version = document["version"];
   const int number = version.integer(0, INT32_MAX);
-  if (number != kFormatVersion) {
-    version.fail(fmt::format("{}, the version that this facezip reads", kFormatVersion), version.got(),
-                 number > kFormatVersion ? "update facezip" : "write the package again");
+  if (number < kImageFormatVersion || number > kFormatVersion) {
+    version.fail(fmt::format("{} or {}, the versions that this facezip reads", kImageFormatVersion, kFormatVersion),
+                 version.got(), number > kFormatVersion ? "update facezip" : "write the package again");
   }
+}
+
+bool hasBlocks(const PackageDescription& description) {
+  return std::ranges::any_of(description.maps, [](const PackageMap& map) {
+    return map.neutral_format || std::ranges::any_of(map.differences, [](const auto& d) { return d.format.has_value(); });
+  });
+}
+
+/// Version 2 knows no blocks: whoever reads it would not find them.
+void requireVersionOfBlocks(const JsonField& document, const PackageDescription& description) {
+  const JsonField version = document["version"];
+  if (!hasBlocks(description) || version.integer(0, INT32_MAX) >= 3) return;
+  version.fail("3, for textures in blocks (\"format\")", version.got(), "write the package again");
 }
 
 }  // namespace
@@ -200,7 +248,7 @@ std::string packageJson(const PackageDescription& description) {
   for (const PackageMap& map : description.maps) maps.push_back(mapJson(map));
   try {
     Document document = {{"format", "facezip-package"},
-                         {"version", kFormatVersion},
+                         {"version", hasBlocks(description) ? kFormatVersion : kImageFormatVersion},
                          {"generator", description.generator},
                          {"name", description.name},
                          {"expressions", description.expressions},
@@ -246,6 +294,7 @@ PackageDescription parsePackageJson(const std::string& text, const std::string& 
   }
   requireUnique(names, "map");
   requireUsed(weight_sets, description.maps);
+  requireVersionOfBlocks(document, description);
   parseGuides(document, description);
   description.method_json = document["method"].object().dump();
   return description;

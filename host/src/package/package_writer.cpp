@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <optional>
 #include <utility>
 
 #include "facezip/version.hpp"
@@ -40,9 +41,11 @@ PackageDescription complete(PackageDescription description) {
   description.generator = "facezip " FACEZIP_VERSION;
   for (int set = 0; set < static_cast<int>(description.weights.size()); ++set) completeWeights(description, set);
   for (PackageMap& map : description.maps) {
-    map.neutral_file = map.name + (map.sample_type == SampleType::kFloat32 ? "/neutral.exr" : "/neutral.png");
+    const char* image = map.sample_type == SampleType::kFloat32 ? "exr" : "png";
+    map.neutral_file = fmt::format("{}/neutral.{}", map.name, map.neutral_format ? "ktx2" : image);
     for (std::size_t i = 0; i < map.differences.size(); ++i) {
-      map.differences[i].file = fmt::format("{}/difference_{}.png", map.name, i);
+      PackageDifference& difference = map.differences[i];
+      difference.file = fmt::format("{}/difference_{}.{}", map.name, i, difference.format ? "ktx2" : "png");
     }
   }
   return description;
@@ -51,9 +54,10 @@ PackageDescription complete(PackageDescription description) {
 }  // namespace
 
 struct PackageWriter::Images {
+  /// Textures in blocks have no writer here.
   struct Map {
-    image::ImageWriter neutral;
-    std::vector<image::ImageWriter> differences;
+    std::optional<image::ImageWriter> neutral;
+    std::vector<std::optional<image::ImageWriter>> differences;
   };
   std::vector<Map> maps;
   std::vector<char> weights_written;  // per set; not vector<bool>, whose elements threads cannot set at once
@@ -67,24 +71,26 @@ PackageWriter::PackageWriter(PackageDescription description, fs::path directory)
   images_->weights_written.resize(description_.weights.size());
   for (const PackageMap& map : description_.maps) {
     io::createDirectories(directory_ / map.name);
-    std::vector<image::ImageWriter> differences;
-    for (const PackageDifference& difference : map.differences) {
-      differences.emplace_back(directory_ / difference.file, differenceShape(map));
+    Images::Map& images = images_->maps.emplace_back();
+    if (!map.neutral_format) {
+      images.neutral.emplace(directory_ / map.neutral_file, neutralShape(map), map.colour_space);
     }
-    images_->maps.push_back({image::ImageWriter(directory_ / map.neutral_file, neutralShape(map), map.colour_space),
-                             std::move(differences)});
+    for (const PackageDifference& difference : map.differences) {
+      std::optional<image::ImageWriter>& writer = images.differences.emplace_back();
+      if (!difference.format) writer.emplace(directory_ / difference.file, differenceShape(map));
+    }
   }
 }
 
 PackageWriter::~PackageWriter() = default;
 
 void PackageWriter::writeNeutralRows(int map, std::span<const std::byte> rows, int row_count) {
-  images_->maps[static_cast<std::size_t>(map)].neutral.writeRows(rows, row_count);
+  images_->maps[static_cast<std::size_t>(map)].neutral->writeRows(rows, row_count);
 }
 
 void PackageWriter::writeDifferenceRows(int map, int difference, std::span<const std::byte> codes, int row_count) {
-  images_->maps[static_cast<std::size_t>(map)].differences[static_cast<std::size_t>(difference)].writeRows(codes,
-                                                                                                           row_count);
+  images_->maps[static_cast<std::size_t>(map)].differences[static_cast<std::size_t>(difference)]->writeRows(codes,
+                                                                                                            row_count);
 }
 
 void PackageWriter::writeWeights(int set, std::span<const std::byte> codes) {
@@ -97,8 +103,10 @@ void PackageWriter::writeWeights(int set, std::span<const std::byte> codes) {
 void PackageWriter::finish() {
   assert(std::ranges::all_of(images_->weights_written, [](char written) { return written != 0; }));
   for (Images::Map& map : images_->maps) {
-    map.neutral.close();
-    for (image::ImageWriter& difference : map.differences) difference.close();
+    if (map.neutral) map.neutral->close();
+    for (std::optional<image::ImageWriter>& difference : map.differences) {
+      if (difference) difference->close();
+    }
   }
   io::writeTextFile(directory_ / kDescriptionFile, packageJson(description_));
 }

@@ -235,11 +235,18 @@ std::vector<fs::path> everyFile(const fs::path&) {
 
 }  // namespace
 
+ProtectedPaths inputsOf(const fs::path& scans, const fs::path& template_directory, const RegistrationOptions& options) {
+  ProtectedPaths paths;
+  paths.add(scans, "the scans").add(template_directory, "the template");
+  return paths.add(options.landmarks, "the landmarks");
+}
+
 RegistrationReport registerScans(const fs::path& scans, const fs::path& template_directory, const fs::path& capture,
                                  const RegistrationOptions& options, const Device& device, Progress& progress) {
   requireSaneOptions(options);
   compress::StageClock clock;
-  io::StagedDirectory staged(capture, {kManifest, "\"generator\": \"facezip register\"", everyFile});
+  inputsOf(scans, template_directory, options).requireApartFromFolder(capture);
+  io::StagedDirectory staged(capture, {kManifest, "\"generator\": \"facezip register\"", everyFile}, &progress);
   progress.stage("reading the template", 0);
   Job job{openScans(scans, options.landmarks),
           readRegistrationTemplate(template_directory),

@@ -13,7 +13,7 @@
 #include "image/image_file.hpp"
 #include "io/base64.hpp"
 #include "io/read_file.hpp"
-#include "io/staged_directory.hpp"
+#include "io/scratch_directory.hpp"
 #include "package/guides.hpp"
 #include "package/json_field.hpp"
 #include "package/package_files.hpp"
@@ -31,16 +31,14 @@ constexpr int kLargestThumbnail = 512;
 /// Pictures as data URIs. PNG: what JPEG adds would be taken for what the package lost.
 class Pictures {
  public:
-  explicit Pictures(const fs::path& beside) : staged_(beside) {}
-
   std::string uri(const image::Image& picture) const {
-    const fs::path file = staged_.path() / "picture.png";
+    const fs::path file = scratch_.path() / "picture.png";
     image::writeImage(file, picture);
     return "data:image/png;base64," + io::base64(io::readFile(file, "a picture of the report"));
   }
 
  private:
-  io::StagedDirectory staged_;  // never committed
+  io::ScratchDirectory scratch_;
 };
 
 image::Image fromValues(int width, int height, int channels, const std::vector<float>& values) {
@@ -193,9 +191,9 @@ std::string readCompressReport(const fs::path& file) {
 }
 
 void writeHtmlReport(const fs::path& file, const Package& package, const Evaluation& evaluation,
-                     const HtmlReportOptions& options) {
+                     const HtmlReportOptions& options, Progress* progress) {
   assert(!evaluation.pictures.empty());
-  const Pictures pictures(fs::temp_directory_path() / "facezip-report");
+  const Pictures pictures;
   json data = {{"evaluation", json::parse(toJson(evaluation))},
                {"package", json::parse(package::packageJson(package.description()))},
                {"device", options.device},
@@ -211,7 +209,7 @@ void writeHtmlReport(const fs::path& file, const Package& package, const Evaluat
   std::string page(report::embeddedReportPage().at("report.html"));
   constexpr std::string_view kPlace = "@DATA@";
   page.replace(page.find(kPlace), kPlace.size(), forScript(data));
-  writeReport(file, page);
+  writeReport(file, page, progress);
 }
 
 }  // namespace facezip

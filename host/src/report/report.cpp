@@ -215,20 +215,25 @@ std::string toJson(const SolvedClip& clip) {
   return object.dump(2) + "\n";
 }
 
-void requireReportPlace(const std::filesystem::path& file) {
+void requireReportPlace(const std::filesystem::path& file, const ProtectedPaths& taken, const std::string& option) {
   namespace fs = std::filesystem;
-  if (file.empty() || (fs::exists(file) && !fs::is_directory(file) && io::fileToReplace(file).empty())) return;
+  if (file.empty()) return;
+  taken.requireApart(file, option);
+  const std::string cure = "choose another " + option;
   std::error_code error;
-  if (fs::is_directory(file, error)) throw OutputError(file, "a directory is in the way", "choose another --report");
+  const fs::file_status status = fs::status(file, error);
+  if (fs::is_directory(status)) throw OutputError(file, "a directory is in the way", cure);
+  if (!fs::status_known(status)) throw OutputError(file, error.message(), cure);
+  if (fs::exists(status) && !fs::is_regular_file(status)) return;  // /dev/stdout, a pipe
   fs::path folder = fs::absolute(file).parent_path();
   while (!fs::exists(folder, error) && folder.has_relative_path()) folder = folder.parent_path();
   if (::access((folder / ".").c_str(), W_OK | X_OK) == 0) return;
-  throw OutputError(file, fmt::format("{}: {}", folder.string(), std::strerror(errno)), "choose another --report");
+  throw OutputError(file, fmt::format("{}: {}", folder.string(), std::strerror(errno)), cure);
 }
 
-void writeReport(const std::filesystem::path& file, const std::string& json_text) {
+void writeReport(const std::filesystem::path& file, const std::string& json_text, Progress* progress) {
   if (file.has_parent_path()) io::createDirectories(file.parent_path());
-  io::writeTextFileAtomically(file, json_text);
+  io::writeTextFileAtomically(file, json_text, progress);
 }
 
 }  // namespace facezip

@@ -225,11 +225,18 @@ void writeMeshes(const RigInputs& inputs, const RigFace& face, const geometry::E
 
 }  // namespace
 
+ProtectedPaths inputsOf(const Capture& capture, const fs::path& template_directory, const RigOptions& options) {
+  return inputsOf(capture, options.compress)
+      .add(template_directory, "the template that is read")
+      .addFile(options.guess, "the weights that are read");
+}
+
 RigReport rigCapture(const Capture& capture, const fs::path& template_directory, const fs::path& package,
                      const RigOptions& options, const Device& device, Progress& progress) {
   requireSaneOptions(options);
+  inputsOf(capture, template_directory, options).requireApartFromFolder(package);
   compress::StageClock clock;
-  io::StagedDirectory staged(package, package::footprint());
+  io::StagedDirectory staged(package, package::footprint(), &progress);
   RigInputs inputs = readInputs(capture, template_directory, options, progress);
   clock.book("reading meshes");
 
@@ -239,10 +246,15 @@ RigReport rigCapture(const Capture& capture, const fs::path& template_directory,
   inputs.subject.expressions = rig.examples;  // as the rig poses them: without the head's motion
   clock.book("fitting the rig");
 
-  // Compressed into the staging directory, which is empty: both appear together or not at all.
+  // Compressed within the staging directory: both appear together or not at all.
   CompressOptions compress = options.compress;
   compress.further_weight_maps = static_cast<int>(inputs.rig_template.names.size());  // a budget holds the shapes' too
-  report.compress = compressCapture(capture, staged.path(), compress, device, progress);
+  const fs::path compressed = staged.path() / ".compressed";                          // a name that no map has
+  report.compress = compressCapture(capture, compressed, compress, device, progress);
+  for (const fs::directory_entry& entry : fs::directory_iterator(compressed)) {
+    fs::rename(entry.path(), staged.path() / entry.path().filename());
+  }
+  fs::remove(compressed);
   clock.book("compressing");
 
   const ShapeTextures textures = addShapeTextures(capture, staged.path(), inputs, rig, options, progress);

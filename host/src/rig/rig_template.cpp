@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "facezip/error.hpp"
 #include "facezip/geometry/obj_io.hpp"
@@ -67,6 +68,8 @@ void requireSkin(const RigTemplate& rig_template, const geometry::TriangleMesh& 
   geometry::TriangleMesh skin;  // the first vertices and triangles; UVs are the capture's
   skin.positions = whole.positions.topRows(std::min(whole.positions.rows(), mesh.positions.rows()));
   skin.triangles = whole.triangles.topRows(std::min(whole.triangles.rows(), mesh.triangles.rows()));
+  skin.polygons.assign(whole.polygons.begin(),
+                       whole.polygons.begin() + std::min(std::ssize(whole.polygons), skin.triangles.rows()));
   geometry::requireSameTopology(mesh, mesh_file, skin, rig_template.neutral_file.string());
   for (Eigen::Index t = skin.triangles.rows(); t < whole.triangles.rows(); ++t) {
     if (whole.triangles.row(t).maxCoeff() >= mesh.positions.rows()) continue;

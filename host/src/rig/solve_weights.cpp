@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 
 #include "facezip/geometry/head_motion.hpp"
 #include "facezip/geometry/obj_io.hpp"
@@ -54,6 +55,8 @@ LoadedRig load(const Rig& rig) {
   while (triangles > 0 && whole.triangles.row(triangles - 1).maxCoeff() >= rig.skin_vertices) --triangles;
   loaded.skin.positions = whole.positions.topRows(rig.skin_vertices);
   loaded.skin.triangles = whole.triangles.topRows(triangles);
+  loaded.skin.polygons.assign(whole.polygons.begin(),
+                              whole.polygons.begin() + std::min(std::ssize(whole.polygons), triangles));
   return loaded;
 }
 
@@ -196,13 +199,13 @@ SolvedClip solveWeights(const fs::path& package, const std::vector<fs::path>& me
   return clip;
 }
 
-void writeClip(const fs::path& file, const SolvedClip& clip) {
+void writeClip(const fs::path& file, const SolvedClip& clip, Progress* progress) {
   std::string text = fmt::format("{}{}\n", clip.numbered ? "frame," : "", fmt::join(clip.shapes, ","));
   for (std::size_t f = 0; f < clip.weights.size(); ++f) {
     if (clip.numbered) text += fmt::format("{},", f);
     text += fmt::format("{:.6g}\n", fmt::join(clip.weights[f], ","));
   }
-  io::writeTextFileAtomically(file, text);
+  io::writeTextFileAtomically(file, text, progress);
 }
 
 }  // namespace facezip

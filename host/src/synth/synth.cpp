@@ -185,7 +185,7 @@ std::vector<fs::path> everyFile(const fs::path&) {
 
 void synthesizeCapture(const fs::path& output, const SynthOptions& options, Progress& progress) {
   const std::vector<synth::MapFormat> formats = chosenFormats(options);
-  io::StagedDirectory staged(output, {kManifest, "\"generator\": \"facezip synth\"", everyFile});
+  io::StagedDirectory staged(output, {kManifest, "\"generator\": \"facezip synth\"", everyFile}, &progress);
   const synth::HeadShape shape(options.seed);
   const synth::HeadMesh head(shape);
   const std::vector<synth::Expression> expressions = synth::makeExpressions(options.expressions, options.seed);

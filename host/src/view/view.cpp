@@ -17,6 +17,8 @@ namespace facezip {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr std::uintmax_t kLargestTexture = std::uintmax_t{4} << 30;
+
 /// Tells the page, before its script runs, that the package's files are scripts.
 std::string pageOnDisk(std::string_view page) {
   constexpr std::string_view kBefore = "<script src=\"viewer.js\">";
@@ -52,8 +54,9 @@ std::vector<OpenPackageFile> openPackageFiles(const Package& package) {
 }
 
 void writeViewer(const Package& package, const fs::path& output, Progress& progress) {
+  inputsOf(package).requireApartFromFolder(output);
   checkTexels(package, progress);
-  io::StagedDirectory staged(output, {"viewer.js", "facezip"});
+  io::StagedDirectory staged(output, {"viewer.js", "facezip"}, &progress);
   for (const auto& [name, text] : viewerPage()) {
     io::writeTextFile(staged.path() / name, name == "index.html" ? pageOnDisk(text) : std::string(text));
   }

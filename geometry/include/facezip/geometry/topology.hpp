@@ -8,13 +8,15 @@
 
 namespace facezip::geometry {
 
-/// Checks that an expression is the neutral, moved: the same number of vertices and the same triangles, and the same
-/// UVs (to 1e-5, the rounding of an exporter) and UV triangles where the expression's file has any. neutral_file,
-/// expression_file  for messages Throws InputError naming the first difference.
+/// Checks that an expression is the neutral, moved: the same number of vertices, the same faces in the same order, each
+/// beginning at any of its corners, and, where the expression's file has any, the same UVs at the corners of the faces
+/// (to 1.1e-4, four decimals), however the file lists them.
+/// neutral_file, expression_file  for messages
+/// Throws InputError naming the first difference.
 void requireSameTopology(const TriangleMesh& neutral, const std::string& neutral_file, const TriangleMesh& expression,
                          const std::string& expression_file);
 
-/// Checks that the mesh has UVs and that those its triangles use lie in [0,1] (to 1e-5).
+/// Checks that the mesh has UVs and that those its triangles use lie in [0,1] (to 1.1e-4).
 /// Throws InputError naming the first UV outside, as the file counts them (from 1), and its value.
 void requireUvs(const TriangleMesh& mesh, const std::string& file);
 

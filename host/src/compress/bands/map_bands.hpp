@@ -32,6 +32,7 @@ class BandBuffers {
   device::DeviceContext& context;
   DeviceTiles tiles;
   device::PooledBuffer samples;
+  device::PooledBuffer neutral;
   device::PooledBuffer differences;
 };
 
@@ -41,9 +42,14 @@ BandShape bandShape(const image::SampleBands& samples, int rows);
 /// Gives the tiles of rows [begin, end) of a map; called one band ahead, in another thread.
 using MakeTiles = std::function<TileMasks(int begin, int end)>;
 
+/// What a coded neutral decodes to in rows [begin, end), in units of 1/255. Called between two visits.
+using NeutralRows = std::function<std::span<const float>(int begin, int end)>;
+
 /// Runs `visit` on every band of a map from top to bottom, with its tiles uploaded and its differences computed.
+/// neutral  where set, differences are to that instead of the captured neutral
 /// Throws what reading, the device and `visit` throw, and Cancelled.
 void forEachMapBand(image::SampleBands& samples, int band_rows, BandBuffers& buffers, const MakeTiles& make_tiles,
-                    std::string_view stage, Progress& progress, const std::function<void(const MapBand&)>& visit);
+                    std::string_view stage, Progress& progress, const std::function<void(const MapBand&)>& visit,
+                    const NeutralRows& neutral = {});
 
 }  // namespace facezip::compress

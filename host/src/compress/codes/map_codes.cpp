@@ -1,8 +1,36 @@
 #include "compress/codes/map_codes.hpp"
 
+#include <algorithm>
 #include <cassert>
+#include <cmath>
 
 namespace facezip::compress {
+namespace {
+
+/// The code nearest to `code` that blocks of one colour have exactly: BC1's ends have 5, 6 and 5 bits; BC7's have 7 and
+/// share the eighth. Others have all.
+double exactCode(BlockFormat format, std::size_t channel, double code) {
+  if (format == BlockFormat::kBc7) return 2.0 * std::min(std::round(code / 2.0), 127.0);
+  if (format != BlockFormat::kBc1) return code;
+  const int bits = channel == 1 ? 6 : 5;
+  const int end = static_cast<int>(std::round(code / 255.0 * ((1 << bits) - 1)));
+  return end << (8 - bits) | end >> (2 * bits - 8);
+}
+
+}  // namespace
+
+MapCodes codesOfBlocks(std::span<const TextureRange> ranges, BlockFormat format, int textures) {
+  MapCodes codes = codesOfBits(ranges, 8);
+  const std::size_t channels = ranges.size() / static_cast<std::size_t>(textures);
+  for (std::size_t plane = 0; plane < ranges.size(); ++plane) {
+    TextureEncoding& encoding = codes.encoding[plane];
+    if (encoding.scale == 0.0f) continue;
+    const double zero = std::round(-encoding.offset / encoding.scale);
+    encoding = encodingAround(ranges[plane], exactCode(format, plane % channels, zero));
+  }
+  codes.formats.assign(static_cast<std::size_t>(textures), format);
+  return codes;
+}
 
 MapCodes codesOfBits(std::span<const TextureRange> ranges, int bits) {
   MapCodes codes{bits, {}};

@@ -7,16 +7,22 @@
 
 #include "compress/codes/texture_encoding.hpp"
 #include "compress/refine/grid_weights.hpp"
+#include "facezip/block_format.hpp"
 
 namespace facezip::compress {
 
 struct MapCodes {
   int bits = 8;                           ///< of a code, 8 or 16
   std::vector<TextureEncoding> encoding;  ///< C x channels
+  std::vector<BlockFormat> formats = {};  ///< C; empty: images
 };
 
 /// Codes of `bits` bits for textures that reach so far, C x channels.
 MapCodes codesOfBits(std::span<const TextureRange> ranges, int bits);
+
+/// Codes of difference textures in blocks of one format. Zero is a code that blocks of one colour decode to exactly, as
+/// far as the format has such: what does not differ stays as it is. formats.size() is C.
+MapCodes codesOfBlocks(std::span<const TextureRange> ranges, BlockFormat format, int textures);
 
 /// Mean of W^2 of each weight channel over the cells that `used` marks and all expressions, as decoded; C values.
 std::vector<double> meanSquares(const EncodedWeights& weights, const WeightSpace& space,

@@ -30,4 +30,15 @@ TextureEncoding encodingFor(const TextureRange& range, int bits) {
   return {scale, -scale * zero_code};
 }
 
+TextureEncoding encodingAround(const TextureRange& range, double zero_code) {
+  assert(zero_code >= 0.0 && zero_code <= 255.0);
+  // Where zero is the first or the last code, what lies beyond it is clamped: a scale for it would be infinite.
+  const double above = zero_code < 255.0 ? std::max(range.max, 0.0f) / (255.0 - zero_code) : 0.0;
+  const double below = zero_code > 0.0 ? -std::min(range.min, 0.0f) / zero_code : 0.0;
+  const double step = std::max(above, below);
+  if (!(step >= std::numeric_limits<float>::min())) return {0.0f, 0.0f};
+  const float scale = roundUpToDigits(step, std::numeric_limits<float>::digits - 8);
+  return {scale, -scale * static_cast<float>(zero_code)};
+}
+
 }  // namespace facezip::compress

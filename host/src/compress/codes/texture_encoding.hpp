@@ -21,4 +21,7 @@ struct TextureEncoding {
 /// bits  8 or 16
 TextureEncoding encodingFor(const TextureRange& range, int bits);
 
+/// The same in 8 bits with a zero that is given, a whole code from 0 to 255: the smallest scale that holds the range.
+TextureEncoding encodingAround(const TextureRange& range, double zero_code);
+
 }  // namespace facezip::compress

@@ -68,15 +68,16 @@ const cl::Buffer& DifferenceFit::run(const GridBand& band, const WeightWindow& w
   return output.buffer();
 }
 
-std::vector<FitError> DifferenceFit::errors() {
-  std::vector<FitError> result(tile_count_);
-  if (tile_count_ == 0) return result;
-  const std::size_t items = gpu_ ? kTileTexels : 1;
-  const device::MappedBytes mapped = errors_.mapForReading(tile_count_ * items * sizeof(cl_float2));
-  const std::span<const cl_float2> sums = mapped.as<const cl_float2>();
-  for (std::size_t i = 0; i < sums.size(); ++i) {
-    result[i / items].weighted += static_cast<double>(sums[i].s[0]);
-    result[i / items].plain += static_cast<double>(sums[i].s[1]);
+std::vector<FitError> DifferenceFit::errors() { return addTileErrors(errors_, tile_count_, gpu_ ? kTileTexels : 1); }
+
+std::vector<FitError> addTileErrors(device::PooledBuffer& sums, std::size_t tiles, std::size_t sums_of_tile) {
+  std::vector<FitError> result(tiles);
+  if (tiles == 0) return result;
+  const device::MappedBytes mapped = sums.mapForReading(tiles * sums_of_tile * sizeof(cl_float2));
+  const std::span<const cl_float2> parts = mapped.as<const cl_float2>();
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    result[i / sums_of_tile].weighted += static_cast<double>(parts[i].s[0]);
+    result[i / sums_of_tile].plain += static_cast<double>(parts[i].s[1]);
   }
   return result;
 }

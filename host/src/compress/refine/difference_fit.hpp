@@ -22,6 +22,9 @@ struct FitError {
   double plain = 0.0;     ///< each counted once
 };
 
+/// Errors of tiles from the sums that work-items left, [tile][sums_of_tile] float2: weighted, plain. Waits.
+std::vector<FitError> addTileErrors(device::PooledBuffer& sums, std::size_t tiles, std::size_t sums_of_tile);
+
 /// Numbers of a texel's factored system.
 int differenceFactorPlanes(const WeightSpace& space, int channels);
 

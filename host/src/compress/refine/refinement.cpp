@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cassert>
-#include <future>
 #include <memory>
 #include <numeric>
 
 #include "compress/codes/difference_texture_range.hpp"
 #include "compress/refine/difference_fit.hpp"
 #include "compress/refine/weight_system.hpp"
+#include "compress/refine/window_pass.hpp"
 #include "io/counts.hpp"
 
 namespace facezip::compress {
@@ -83,12 +83,7 @@ class Sweeps {
       rows.begin = std::min(rows.begin, reached.begin);
       rows.end = std::max(rows.end, reached.end);
     }
-    const std::size_t row_floats = problem_.space.rowFloats();
-    std::vector<float> start(toSize(rows.count()) * row_floats);
-    decodeRows(problem_.start, problem_.space, rows.begin, rows.end, start);
-    std::vector<float> weights = start;
-    done.load(rows.begin, begin, std::span(weights).first(toSize(begin - rows.begin) * row_floats));
-    window_.set(rows, weights, start);
+    moveWindow(window_, rows, problem_.start, done);
     if (!by_halves_) return;
     halves_.moveTo(rows);
     for (const auto& map : maps_) halves_.add(map->window.band(), map->window.tileAt(), map->fitWeight());
@@ -110,11 +105,7 @@ class Sweeps {
       found.errors.push_back(error);
     }
     if (by_halves_) turnOnTexels();
-    const WindowRows& rows = window_.rows();
-    const std::vector<float> weights = window_.weights();
-    const auto row_floats = static_cast<std::ptrdiff_t>(problem_.space.rowFloats());
-    found.weights.assign(weights.begin() + (rows.free_begin - rows.begin) * row_floats,
-                         weights.begin() + (rows.free_end - rows.begin) * row_floats);
+    found.weights = freeWeights(window_);
     for (const auto& map : maps_) {
       found.ranges.push_back(map->ranges());
       found.end_errors.push_back(map->error().plain);
@@ -192,16 +183,10 @@ Refinement refine(device::DeviceContext& context, const RefinementProblem& probl
   result.end_errors.assign(problem.maps.size(), 0.0);
   std::vector<std::vector<TextureRange>> tile_ranges(problem.maps.size());  // [tile][plane]
   const int rows = problem.space.rows;
-  const auto endOf = [&](int begin) { return std::min(begin + problem.window_rows, rows); };
   progress.stage("refining", toSize(rows));
   Sweeps sweeps(context, problem, options);
-  sweeps.prepare(0, endOf(0));
-  std::future<void> ahead;  // reads the window after the one at work
-  for (int begin = 0; begin < rows; begin = endOf(begin)) {
-    const int end = endOf(begin);
-    if (ahead.valid()) ahead.get();
-    sweeps.load(begin, end, result.weights);
-    if (end < rows) ahead = std::async(std::launch::async, [&, end] { sweeps.prepare(end, endOf(end)); });
+  const auto load = [&](int begin, int end) { sweeps.load(begin, end, result.weights); };
+  const auto work = [&](int begin, int end) {
     const WindowFit fit = sweeps.sweep(progress);
     result.weights.store(begin, end, fit.weights);
     for (std::size_t i = 0; i < fit.errors.size(); ++i) result.errors[i] += fit.errors[i];
@@ -210,7 +195,8 @@ Refinement refine(device::DeviceContext& context, const RefinementProblem& probl
       result.end_errors[m] += fit.end_errors[m];
     }
     progress.advance(toSize(end));
-  }
+  };
+  forEachWindow(rows, problem.window_rows, [&](int begin, int end) { sweeps.prepare(begin, end); }, load, work);
   // The start is kept whole: it is what is left where clamping costs too much.
   const double clipped = options.most_sweeps > 0 ? options.clipped_tiles : 0.0;
   for (std::size_t m = 0; m < problem.maps.size(); ++m) {

@@ -1,0 +1,50 @@
+#include "compress/block_stage.hpp"
+
+#include <fmt/format.h>
+
+#include "compress/codes/coded_refinement.hpp"
+
+namespace facezip::compress {
+namespace {
+
+/// Turns of textures and weights. The second lowers the RMSE by 1 % (of BC7 and ASTC 4x4), the third and fourth by 0.5 %.
+constexpr int kTurns = 3;
+
+}  // namespace
+
+std::vector<std::optional<CodedNeutral>> codeNeutrals(const PackageForm& form, std::span<const GridMap> group,
+                                                      const Run& run) {
+  std::vector<std::optional<CodedNeutral>> neutrals;
+  for (const GridMap& map : group) {
+    std::optional<CodedNeutral>& neutral = neutrals.emplace_back();
+    const image::ImageShape& shape = map.map->samples->shape();
+    if (!inBlocks(form, map)) {
+      run.progress.note(fmt::format("map {} has {} samples, more than blocks hold: it is kept as images",
+                                    map.map->source->name, image::sampleTypeName(shape.type)));
+      continue;
+    }
+    neutral = codeNeutral(run.context, *map.map, formatFor(form.blocks->neutral, shape.channels),
+                          blocks::Quality::kNormal, run.progress);
+  }
+  run.clock.book("coding neutrals");
+  return neutrals;
+}
+
+EncodedWeights fitWeightsToBlocks(const FitProblem& problem, const PackageForm& form, const FittedWeights& fitted,
+                                  const CoveredFace& face, const Run& run) {
+  const std::vector<MapCodes> codes = codesOf(form, problem.space, problem.maps, fitted, face);
+  std::vector<CodedMap> maps;
+  for (std::size_t m = 0; m < problem.maps.size(); ++m) {
+    const auto& neutral = fitted.neutrals[m];
+    maps.push_back({problem.maps[m],
+                    {codes[m].formats, codes[m].encoding, problem.maps[m].map->samples->shape().channels},
+                    neutral ? &*neutral : nullptr});
+  }
+  const CodedProblem coded{problem.space,         fitted.weights,      maps,
+                           weighedTiles(problem), cellEnergy(problem), problem.window_rows};
+  const GridWeights weights = refineCoded(run.context, coded, RefinementOptions{}, kTurns, run.progress);
+  run.clock.book("fitting to blocks");
+  return encodeFitted(weights, problem);
+}
+
+}  // namespace facezip::compress

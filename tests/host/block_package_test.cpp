@@ -1,0 +1,201 @@
+// Packages with textures in blocks: written by compressing, read by all that reads packages.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "blocks/block_decoder.hpp"
+#include "blocks/block_encoder.hpp"
+#include "blocks/texture_file.hpp"
+#include "facezip/compress.hpp"
+#include "facezip/evaluate.hpp"
+#include "facezip/reconstruct.hpp"
+#include "file_contents.hpp"
+#include "io/folder.hpp"
+#include "package/package_textures.hpp"
+#include "small_capture.hpp"
+#include "temporary_directory.hpp"
+#include "test_device.hpp"
+
+namespace facezip {
+namespace {
+using test::testDevice;
+namespace fs = std::filesystem;
+
+CompressOptions smallOptions(std::optional<BlockFormat> format = {}) {
+  CompressOptions options;
+  options.unit = "m";
+  options.mask_radius = {5.0, geometry::LengthUnit::kCentimetre};
+  options.restarts = 10;
+  options.cluster_restarts = 8;
+  options.texture_format = format;
+  return options;
+}
+
+double rmse(const Capture& capture, const fs::path& package) {
+  Progress progress;
+  return evaluatePackage(capture, Package::open(package), {}, testDevice(), progress).maps[0].rmse.at("package").pooled;
+}
+
+/// Keeps what is noted.
+class Notes : public Progress {
+ public:
+  void note(std::string_view message) override { all.emplace_back(message); }
+  std::vector<std::string> all;
+};
+
+class BlockPackage : public testing::TestWithParam<BlockFormat> {};
+
+TEST_P(BlockPackage, IsSmallAndNearCapture) {
+  const test::TemporaryDirectory folder;
+  test::writeSmallCapture(folder / "c", {.expressions = 9});
+  Progress progress;
+  const Capture capture = openCapture(folder / "c");
+  compressCapture(capture, folder / "images", smallOptions(), testDevice(), progress);
+  compressCapture(capture, folder / "blocks", smallOptions(GetParam()), testDevice(), progress);
+  const Package package = Package::open(folder / "blocks");
+  const PackageMap& map = package.maps()[0];
+  EXPECT_EQ(map.neutral_format, GetParam());
+  EXPECT_EQ(map.neutral_file, "albedo/neutral.ktx2");
+  EXPECT_EQ(map.differences[3].format, GetParam());
+  const auto texture = static_cast<std::uint64_t>(blocks::blockBytes(GetParam(), map.width, map.height));
+  const std::uint64_t weights =
+      Package::open(folder / "images").bytesInMemory() - 5 * map.frameBytes();
+  EXPECT_EQ(package.bytesInMemory(), 5 * texture + weights);
+  // Spots on a smooth ground: images of this capture are exact but for rounding, and blocks nearly so.
+  const double most = GetParam() == BlockFormat::kBc1 ? 1.6 : GetParam() == BlockFormat::kAstc6x6 ? 0.9 : 0.5;
+  EXPECT_LT(rmse(capture, folder / "blocks"), most);
+}
+
+TEST_P(BlockPackage, IsTheSameBytesTwice) {
+  const test::TemporaryDirectory folder;
+  test::writeSmallCapture(folder / "c", {.expressions = 6, .maps = {"albedo", "normal"}});
+  Progress progress;
+  const Capture capture = openCapture(folder / "c");
+  compressCapture(capture, folder / "a", smallOptions(GetParam()), testDevice(), progress);
+  compressCapture(capture, folder / "b", smallOptions(GetParam()), testDevice(), progress);
+  EXPECT_EQ(test::filesOf(folder / "a"), test::filesOf(folder / "b"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, BlockPackage,
+                         testing::Values(BlockFormat::kBc7, BlockFormat::kBc1, BlockFormat::kAstc4x4,
+                                         BlockFormat::kAstc6x6),
+                         [](const auto& format) {
+                           std::string name(blockFormatName(format.param));
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+/// The package's textures coded as they are, without another look at what is blended from them.
+void codeAfterwards(const fs::path& package, BlockFormat format) {
+  const Package images = Package::open(package);
+  blocks::EncoderOptions options;
+  options.format = format;
+  const auto encoder = blocks::makeBlockEncoder(testDevice().context(), options);
+  const auto decoder = blocks::makeBlockDecoder(format, 3);
+  const auto recode = [&](const package::StoredTexture& texture) {
+    image::Image image = package::readTexture(images.folder(), texture);
+    const image::ImageShape& shape = image.shape;
+    std::vector<std::byte> blocks(blocks::blockBytes(format, shape.width, shape.height));
+    const std::span samples(reinterpret_cast<std::uint8_t*>(image.samples.data()), image.samples.size());
+    encoder->encode({shape.width, shape.height, 3, std::span<const std::uint8_t>(samples), {}}, blocks, {});
+    decoder->decode(shape.width, shape.height, blocks, samples);
+    image::writeImage(package / texture.file, image);
+  };
+  recode(package::neutralTexture(images.maps()[0]));
+  for (int i = 0; i < images.differences(); ++i) recode(package::differenceTexture(images.maps()[0], i));
+}
+
+TEST(BlockPackages, AreBetterThanImagesThatAreCodedAfterwards) {
+  const test::TemporaryDirectory folder;
+  test::writeSmallCapture(folder / "c", {.expressions = 9});
+  Progress progress;
+  const Capture capture = openCapture(folder / "c");
+  compressCapture(capture, folder / "blocks", smallOptions(BlockFormat::kBc1), testDevice(), progress);
+  compressCapture(capture, folder / "images", smallOptions(), testDevice(), progress);
+  codeAfterwards(folder / "images", BlockFormat::kBc1);
+  EXPECT_LT(rmse(capture, folder / "blocks"), 0.85 * rmse(capture, folder / "images"));
+}
+
+TEST(BlockPackages, WeightsThatSuitTheBlocksAreBetterThanThoseThatDoNot) {
+  const test::TemporaryDirectory folder;
+  test::writeSmallCapture(folder / "c", {.expressions = 9});
+  Progress progress;
+  const Capture capture = openCapture(folder / "c");
+  CompressOptions options = smallOptions(BlockFormat::kBc1);
+  compressCapture(capture, folder / "refined", options, testDevice(), progress);
+  options.method = Method::kPaper;
+  compressCapture(capture, folder / "paper", options, testDevice(), progress);
+  EXPECT_LT(rmse(capture, folder / "refined"), rmse(capture, folder / "paper"));
+}
+
+TEST(BlockPackages, TakeOtherBlocksForDifferences) {
+  const test::TemporaryDirectory folder;
+  test::writeSmallCapture(folder / "c", {.expressions = 6});
+  Progress progress;
+  CompressOptions options = smallOptions(BlockFormat::kAstc5x5);
+  options.difference_format = BlockFormat::kAstc8x8;
+  compressCapture(openCapture(folder / "c"), folder / "p", options, testDevice(), progress);
+  const Package package = Package::open(folder / "p");
+  EXPECT_EQ(package.maps()[0].neutral_format, BlockFormat::kAstc5x5);
+  EXPECT_EQ(package.maps()[0].differences[0].format, BlockFormat::kAstc8x8);
+}
+
+TEST(BlockPackages, HaveMipLevelsOfWhatTheyDecodeTo) {
+  const test::TemporaryDirectory folder;
+  test::writeSmallCapture(folder / "c", {.expressions = 6});
+  Progress progress;
+  compressCapture(openCapture(folder / "c"), folder / "p", smallOptions(BlockFormat::kBc7), testDevice(), progress);
+  const fs::path file = folder / "p/albedo/difference_0.ktx2";
+  const blocks::TextureFileReader reader(file, InputFile(file, "a texture"));
+  const blocks::BlockTexture& texture = reader.texture();
+  EXPECT_EQ(texture.levels, blocks::mostLevels(texture.width, texture.height));
+  EXPECT_FALSE(texture.srgb);  // samplers must not undo a curve before textures are added
+  const auto decoder = blocks::makeBlockDecoder(BlockFormat::kBc7, 3);
+  const auto mean = [&](int level) {
+    const int width = blocks::levelSide(texture.width, level);
+    const int height = blocks::levelSide(texture.height, level);
+    std::vector<float> texels(static_cast<std::size_t>(width * height * 3));
+    decoder->decode(width, height, reader.readLevel(level), std::span(texels));
+    double sum = 0.0;
+    for (const float texel : texels) sum += static_cast<double>(texel);
+    return sum / static_cast<double>(texels.size());
+  };
+  // Coverage weighs the means, so they are near but not the same.
+  EXPECT_NEAR(mean(1), mean(0), 6.0);
+}
+
+TEST(BlockPackages, KeepMapsOfMoreBitsAsImages) {
+  const test::TemporaryDirectory folder;
+  test::writeSmallCapture(folder / "c", {.expressions = 6});
+  test::writeSmallCapture(folder / "c",
+                          {.expressions = 6, .type = image::SampleType::kUint16, .maps = {"displacement"}});
+  Notes progress;
+  compressCapture(openCapture(folder / "c"), folder / "p", smallOptions(BlockFormat::kBc7), testDevice(), progress);
+  const Package package = Package::open(folder / "p");
+  const PackageMap& wide = package.maps()[static_cast<std::size_t>(package.mapIndex("displacement"))];
+  EXPECT_EQ(wide.neutral_format, std::nullopt);
+  EXPECT_EQ(wide.neutral_file, "displacement/neutral.png");
+  EXPECT_THAT(progress.all, testing::Contains(testing::HasSubstr("displacement")));
+}
+
+TEST(BlockPackages, DoNotOpenWithAnotherTexture) {
+  const test::TemporaryDirectory folder;
+  test::writeSmallCapture(folder / "c", {.expressions = 6});
+  Progress progress;
+  const Capture capture = openCapture(folder / "c");
+  compressCapture(capture, folder / "p", smallOptions(BlockFormat::kBc7), testDevice(), progress);
+  compressCapture(capture, folder / "q", smallOptions(BlockFormat::kBc1), testDevice(), progress);
+  fs::copy_file(folder / "q/albedo/neutral.ktx2", folder / "p/albedo/neutral.ktx2",
+                fs::copy_options::overwrite_existing);
+  try {
+    Package::open(folder / "p");
+    FAIL() << "opened";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("neutral.ktx2"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("bc1"));
+  }
+  fs::resize_file(folder / "q/albedo/neutral.ktx2", fs::file_size(folder / "q/albedo/neutral.ktx2") - 1);
+  EXPECT_THROW(Package::open(folder / "q"), InputError);
+}
+
+}  // namespace
+}  // namespace facezip

@@ -12,6 +12,7 @@
 #include "image/output_formats.hpp"
 #include "io/write_file.hpp"
 #include "package/package_files.hpp"
+#include "package/package_json.hpp"
 
 namespace facezip {
 namespace fs = std::filesystem;

@@ -33,9 +33,10 @@ class RegisterBadInput : public testing::Test {
 
   test::CommandResult run(const std::string& options) const {
     return test::runFacezip("register " + quoted(scans()) + " --template " + quoted(shapes()) + " --output " +
-                            quoted(folder_ / "capture") + " --resolution 64 " + options);
+                            quoted(folder_ / "capture") + " " + options);
   }
-  void expectFailure(const std::vector<std::string>& parts, const std::string& options = "--unit cm") const {
+  void expectFailure(const std::vector<std::string>& parts,
+                     const std::string& options = "--unit cm --resolution 64") const {
     const auto files = test::filesBelow(folder_.path());
     const test::CommandResult result = run(options);
     EXPECT_EQ(result.exit_code, cli::kExitInput) << result.error;
@@ -154,7 +155,7 @@ TEST_F(RegisterBadInput, InvertedTrianglesAreTurnedAndHalfAFaceIsTold) {
     scan.triangles = scan.triangles(kept, Eigen::all).eval();
     scan.uv_triangles = scan.uv_triangles(kept, Eigen::all).eval();
   });
-  const test::CommandResult result = run("--unit cm --report " + quoted(folder_ / "report.json"));
+  const test::CommandResult result = run("--unit cm --resolution 64 --report " + quoted(folder_ / "report.json"));
   EXPECT_EQ(result.exit_code, cli::kExitSuccess) << result.error;
   EXPECT_THAT(result.error, HasSubstr("open: triangles face inwards"));
   EXPECT_THAT(result.error, HasSubstr("open: the scan shows"));

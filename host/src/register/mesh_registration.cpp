@@ -98,11 +98,13 @@ RegisteredExpression registerExpression(const RegisteredSubject& subject, const 
                                         Progress& progress) {
   const auto cancel = [&progress] { progress.checkCancelled(); };
   const geometry::LinearModel& model = subject.expressions;
-  const double scale = alignOrRefuse(placed, subject.neutral, false, kLargestExpression).scale;
+  // The unit comes before how well landmarks fit, which is told in millimetres.
+  const double scale = geometry::alignLandmarks(subject.neutral, placed.landmarks, false).scale;
   if (std::max(scale, 1.0 / scale) > kLargestScale) {
     throw InputError({placed.scan.file.string(), "scan", "the unit of the neutral's scan",
                       fmt::format("a face {:.3g} times as large", scale), "export all scans in one unit"});
   }
+  alignOrRefuse(placed, subject.neutral, false, kLargestExpression);
   geometry::ModelPose pose = startOf(model, geometry::alignLandmarks(subject.neutral, placed.landmarks, true));
   pose = geometry::poseFromLandmarks(model, pose, placed.landmarks, {2.0, false}, 8);
   geometry::ModelRegistrationOptions fit;

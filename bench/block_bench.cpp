@@ -74,7 +74,7 @@ void bcEncode(benchmark::State& state, BlockFormat format) {
     context.finish();
   });
   std::vector<float> result(samples.size());
-  context.read(decoded, result.data(), result.size() * sizeof(float), "decoded");
+  context.read(decoded, result, "decoded");
   state.counters["rmse"] = rmse(samples, result);
 }
 

@@ -125,7 +125,7 @@ void measureRow(const Arguments& arguments, const std::vector<Picture>& pictures
     measure(*encoder, options.format, firstChannels(picture, options.channels), arguments.repeats, row);
   }
   const double rmse = std::sqrt(row.squared_error / row.samples);
-  fmt::print("| {} | {} | {:.2f} | {:.3f} | {:.2f} | {:.2f} |\n", infoOf(options.format).name, name,
+  fmt::print("| {} | {} | {:.2f} | {:.3f} | {:.2f} | {:.2f} |\n", blocks::infoOf(options.format).name, name,
              8.0 * row.bytes / row.texels, rmse, 20.0 * std::log10(255.0 / rmse), row.texels / row.seconds / 1e6);
   std::fflush(stdout);
 }
@@ -145,7 +145,7 @@ void run(const Arguments& arguments) {
       if (std::count(arguments.qualities.begin(), arguments.qualities.end(), word) == 0) continue;
       measureRow(arguments, pictures, device, word, {.format = format, .channels = channels, .quality = quality});
     }
-    for (const std::string& effort : isAstc(format) ? arguments.astc : std::vector<std::string>()) {
+    for (const std::string& effort : blocks::isAstc(format) ? arguments.astc : std::vector<std::string>()) {
       blocks::EncoderOptions options{.format = format, .channels = channels};
       options.quality = Quality::kFast;
       options.astc_effort = effortOf(effort);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <memory>
 
 #include "cancel_on_signal.hpp"
@@ -24,13 +25,17 @@ struct Arguments {
 };
 
 /// Frames to blend: one from --weights, or those of --animation.
-AnimationClip readFrames(const Arguments& arguments, const Package& package) {
-  if (!arguments.animation.empty()) return readAnimation(arguments.animation, package);
-  return {static_cast<int>(package.expressions().size()), weightsByName(package, parseWeights(arguments.weights))};
+AnimationClip readFrames(const Arguments& arguments, const Package& package, Progress& progress) {
+  if (!arguments.animation.empty()) return readAnimation(arguments.animation, package, &progress);
+  const auto weights = parseWeights(arguments.weights);
+  for (const auto& [name, weight] : weights) {
+    if (std::abs(weight) > kUsualWeight) progress.note(fmt::format("{} = {}: 1 is the whole expression", name, weight));
+  }
+  return {static_cast<int>(package.expressions().size()), weightsByName(package, weights)};
 }
 
 void blendFrames(const Arguments& arguments, const Package& package, std::uint64_t memory_bytes, Progress& progress) {
-  const AnimationClip clip = readFrames(arguments, package);
+  const AnimationClip clip = readFrames(arguments, package, progress);
   const FramePattern pattern(arguments.output, !arguments.animation.empty(), package.maps().size());
   pattern.requireFits(package, clip.frames(),
                       ProtectedPaths()
@@ -46,11 +51,13 @@ void addBlendCommand(CLI::App& app, const CommonOptions& common) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("blend", "Blends the textures of a package with blendshape weights (Eq. 8)");
   command->add_option("package", arguments->package, "Directory of the package")->required()->type_name("PACKAGE");
-  CLI::Option_group* what = command->add_option_group("frames", "What to blend");
-  what->add_option("--weights", arguments->weights, "One frame: smile=0.7,jawOpen=0.2")->type_name("NAME=VALUE,...");
-  what->add_option("--animation", arguments->animation, "A table (CSV): a row per frame, a column per expression")
-      ->type_name("FILE");
-  what->require_option(1);
+  CLI::Option* weights = command->add_option("--weights", arguments->weights, "One frame: smile=0.7,jawOpen=0.2")
+                             ->type_name("NAME=VALUE,...");
+  CLI::Option* animation =
+      command
+          ->add_option("--animation", arguments->animation, "A table (CSV): a row per frame, a column per expression")
+          ->type_name("FILE")
+          ->excludes(weights);
   command
       ->add_option("-o,--output", arguments->output,
                    "Image file; %04d stands for the frame's number (from 0), {map} for the map's name (several maps "
@@ -61,7 +68,10 @@ void addBlendCommand(CLI::App& app, const CommonOptions& common) {
       ->type_name("FILE.json");
   addDeviceOption(*command, arguments->device);
   addMemoryOption(*command, arguments->memory);
-  command->callback([arguments, &common] {
+  command->callback([arguments, weights, animation, &common] {
+    if (weights->empty() && animation->empty()) {
+      throw CLI::RequiredError("what to blend, --weights NAME=VALUE,... or --animation FILE.csv,");
+    }
     const std::uint64_t memory_bytes = parseBytes("--memory", arguments->memory);
     TerminalProgress progress(common.quiet);
     const CancelOnSignal cancel(progress);

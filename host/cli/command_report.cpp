@@ -49,7 +49,7 @@ void report(const Arguments& arguments, Progress& progress) {
   options.mask_sweep = arguments.mask_sweep;
   options.memory_bytes = parseBytes("--memory", arguments.memory);
   const Package package = Package::open(arguments.package);
-  const Capture capture = openCapture(arguments.capture);
+  const Capture capture = openCapture(arguments.capture, mapNames(package));
   requireReportPlace(
       arguments.output,
       inputsOf(capture).add(inputsOf(package)).addFile(arguments.compress_report, "the report that is read"),

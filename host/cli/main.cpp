@@ -10,7 +10,6 @@
 #include <cstring>
 #include <exception>
 #include <new>
-#include <sstream>
 #include <string>
 
 #include "commands.hpp"
@@ -21,6 +20,7 @@
 #include "facezip/progress.hpp"
 #include "facezip/version.hpp"
 #include "terminal.hpp"
+#include "usage.hpp"
 
 namespace facezip::cli {
 namespace {
@@ -59,10 +59,8 @@ int runCommand(CLI::App& app, int argc, char** argv) {
   } catch (const CLI::Success& request) {
     return app.exit(request);  // --help, --version
   } catch (const CLI::ParseError& error) {
-    std::ostringstream text;
-    app.exit(error, text, text);
-    printError(text.str());
-    return kExitUsage;
+    const std::string fault = usageFault(app, error, argc, argv);
+    return fail(kExitUsage, printable(fault) + "\nRun with --help for more information.");
   } catch (const Cancelled&) {
     return fail(kExitCancelled, "cancelled; nothing was written");
   } catch (const InputError& error) {
@@ -93,7 +91,6 @@ int main(int argc, char** argv) {
   app.name("facezip");
   app.set_version_flag("--version", "facezip " FACEZIP_VERSION);
   app.require_subcommand(1);
-  app.failure_message(CLI::FailureMessage::simple);
   app.get_formatter()->column_width(34);
   CommonOptions common;
   app.add_flag("-q,--quiet", common.quiet, "No progress and no notes on standard error");

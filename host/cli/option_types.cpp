@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -12,16 +14,20 @@ namespace facezip::cli {
 
 std::uint64_t parseBytes(const std::string& option, const std::string& text) {
   static const std::map<std::string, double> factors = {
-      {"", 1.0},     {"B", 1.0},       {"kB", 1e3},        {"MB", 1e6},
-      {"GB", 1e9},   {"KiB", 1024.0},  {"MiB", 1048576.0}, {"GiB", 1073741824.0},
-      {"K", 1024.0}, {"M", 1048576.0}, {"G", 1073741824.0}};
+      {"b", 1.0},         {"kb", 1e3},   {"mb", 1e6},           {"gb", 1e9},      {"kib", 1024.0},
+      {"mib", 1048576.0}, {"k", 1024.0}, {"gib", 1073741824.0}, {"m", 1048576.0}, {"g", 1073741824.0}};
   double number = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  const std::string unit(end, text.data() + text.size());
+  const char* const unit_begin = std::find_if(end, text.data() + text.size(), [](char c) { return c != ' '; });
+  std::string unit(unit_begin, text.data() + text.size());
+  std::ranges::transform(unit, unit.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (error == std::errc() && unit.empty()) {
+    throw InputError({option, "", "a size with its unit", text, fmt::format("{0}MiB? {0}B are bytes", text)});
+  }
   const auto factor = factors.find(unit);
   if (error != std::errc() || factor == factors.end() || !std::isfinite(number) || number * factor->second < 1.0 ||
       number * factor->second > 1e18) {
-    throw InputError({option, "", "a size such as 2GiB or 512MiB", text, ""});
+    throw InputError({option, "", "a size such as 2GiB or 512MB", text, ""});
   }
   return static_cast<std::uint64_t>(number * factor->second);
 }

@@ -7,7 +7,8 @@
 
 namespace facezip::cli {
 
-/// "2GiB", "512MiB", "2GB", "1000000": a number of bytes. Throws InputError naming `option`.
+/// "2GiB", "512 MB", "1.5 gb", "1000B": a number of bytes; upper and lower case are alike. A number without a unit is
+/// refused: nobody means 40 bytes. Throws InputError naming `option`.
 std::uint64_t parseBytes(const std::string& option, const std::string& text);
 
 /// A whole number from 0 to 2^64 - 1. Throws InputError naming `option`.

@@ -44,6 +44,12 @@ void addMapsOption(CLI::App& command, std::vector<std::string>& maps, const std:
   command.add_option("--maps", maps, description)->type_name("NAME,...")->delimiter(',');
 }
 
+std::vector<std::string> mapNames(const Package& package) {
+  std::vector<std::string> names;
+  for (const PackageMap& map : package.maps()) names.push_back(map.name);
+  return names;
+}
+
 void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
   CompressOptions& options = arguments.options;
   command

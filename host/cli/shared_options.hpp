@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "facezip/compress.hpp"
+#include "facezip/package.hpp"
 
 namespace facezip::cli {
 
@@ -19,6 +20,9 @@ void addMemoryOption(CLI::App& command, std::string& memory);
 void addSeedOption(CLI::App& command, std::uint64_t& seed, const std::string& description);
 /// --maps a,b
 void addMapsOption(CLI::App& command, std::vector<std::string>& maps, const std::string& description);
+
+/// The maps of a package, to open its capture with: other folders of that do not matter then.
+std::vector<std::string> mapNames(const Package& package);
 
 /// The texts behind CompressOptions, before they are parsed.
 struct CompressArguments {

@@ -14,25 +14,33 @@ namespace {
 
 constexpr auto kRedrawInterval = std::chrono::milliseconds(100);
 
+/// Is there a line of progress on the terminal? Whatever else is printed clears it.
+bool g_line_shown = false;
+
+void clearLine() {
+  if (!g_line_shown) return;
+  std::fputs("\r\x1b[K", stderr);
+  std::fflush(stderr);
+  g_line_shown = false;
+}
+
 }  // namespace
 
 void printText(const std::string& text) {
+  clearLine();
   if (std::fputs(printableLines(text).c_str(), stdout) == EOF) {
     throw std::system_error(errno, std::generic_category(), "standard output");
   }
 }
 
-void printError(const std::string& text) { std::fputs(printableLines(text).c_str(), stderr); }
+void printError(const std::string& text) {
+  clearLine();
+  std::fputs(printableLines(text).c_str(), stderr);
+}
 
 TerminalProgress::TerminalProgress(bool quiet) : quiet_(quiet), terminal_(!quiet && ::isatty(STDERR_FILENO) == 1) {}
 
 TerminalProgress::~TerminalProgress() { clearLine(); }
-
-void TerminalProgress::clearLine() {
-  if (!line_shown_) return;
-  std::fputs("\r\x1b[K", stderr);
-  line_shown_ = false;
-}
 
 void TerminalProgress::stage(std::string_view name, std::size_t total) {
   stage_ = name;
@@ -60,12 +68,12 @@ void TerminalProgress::showLine(const std::string& text) {
   clearLine();
   std::fputs(fmt::format("{} ...", printable(text)).c_str(), stderr);
   std::fflush(stderr);
-  line_shown_ = true;
+  g_line_shown = true;
 }
 
 void TerminalProgress::note(std::string_view message) {
-  if (quiet_) return;
-  clearLine();
+  // Commands that do a step again (an ablation, a package that was replaced) would say again what it found.
+  if (quiet_ || !noted_.insert(std::string(message)).second) return;
   printError(fmt::format("facezip: {}\n", printable(message)));
 }
 

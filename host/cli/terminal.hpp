@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,8 +13,8 @@
 
 namespace facezip::cli {
 
-/// Writes to standard output; names of strangers in it do nothing to a terminal. Throws std::system_error where it
-/// cannot be written.
+/// Writes to standard output, in place of a line of progress; names of strangers in it do nothing to a terminal. Throws
+/// std::system_error where it cannot be written.
 void printText(const std::string& text);
 template <typename... Arguments>
 void say(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
@@ -25,7 +26,7 @@ void say(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
 void printError(const std::string& text);
 
 /// Shows the stage and its share done on one line of standard error when that is a terminal; in a pipe only notes
-/// appear.
+/// appear. No note is printed twice. One at a time.
 class TerminalProgress : public Progress {
  public:
   /// quiet  no progress and no notes
@@ -38,10 +39,9 @@ class TerminalProgress : public Progress {
 
  private:
   void showLine(const std::string& text);
-  void clearLine();
   bool quiet_;
   bool terminal_;
-  bool line_shown_ = false;
+  std::set<std::string> noted_;
   std::string stage_;
   std::size_t total_ = 0;
   std::chrono::steady_clock::time_point last_shown_;

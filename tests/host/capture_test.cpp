@@ -6,12 +6,14 @@
 
 #include "facezip/printable.hpp"
 #include "io/staged_directory.hpp"
+#include "notes.hpp"
 #include "small_capture.hpp"
 #include "temporary_directory.hpp"
 
 namespace facezip {
 namespace {
 namespace fs = std::filesystem;
+using test::Notes;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -67,13 +69,6 @@ TEST(Capture, ImportanceIsFoundOrNamed) {
   io::writeTextFile(folder / "c/capture.json", R"({"importance": 1})");
   EXPECT_THAT(failure(folder / "c"), HasSubstr("importance: expected a string"));
 }
-
-/// Keeps what is noted.
-class Notes : public Progress {
- public:
-  void note(std::string_view message) override { all.emplace_back(message); }
-  std::vector<std::string> all;
-};
 
 TEST(Capture, MeshesAreFoundWhateverTheCaseOfTheirExtension) {
   const test::TemporaryDirectory folder;
@@ -160,6 +155,124 @@ TEST(Capture, MeshesInAnotherPlaceAreFoundOrNamed) {
   EXPECT_THAT(failure(c), testing::AllOf(HasSubstr("expression_meshes"), HasSubstr("e0O")));
   io::writeTextFile(c / "capture.json", R"({"expression_meshes": {"e00": 3}})");
   EXPECT_THAT(failure(c), HasSubstr("expression_meshes.e00: expected a string"));
+}
+
+// "e" and an accent, as macOS names files, is the letter that keyboards give.
+TEST(Capture, NamesAreComparedAsTheyLook) {
+  const test::TemporaryDirectory folder;
+  const fs::path c = folder / "cafe\u0301";
+  test::writeSmallCapture(c, {.expressions = 2, .width = 8, .height = 8, .maps = {"albedo", "normal"}});
+  fs::rename(c / "albedo/e00.png", c / "albedo/e\u0301.png");
+  fs::rename(c / "normal/e00.png", c / "normal/\u00e9.png");
+  fs::create_directory(c / "expressions");
+  for (const char* mesh : {"e\u0301.obj", "e01.obj"}) fs::copy_file(c / "neutral.obj", c / "expressions" / mesh);
+  Notes notes;
+  const Capture capture = openCapture(c, {}, &notes);
+  EXPECT_EQ(capture.name, "caf\u00e9");
+  EXPECT_THAT(capture.expressions, ElementsAre("e01", "\u00e9"));
+  EXPECT_EQ(capture.maps[0].expressions[1], c / "albedo/e\u0301.png") << "files keep theirs";
+  EXPECT_THAT(capture.expression_meshes, ElementsAre(c / "expressions/e01.obj", c / "expressions/e\u0301.obj"));
+  EXPECT_THAT(notes.all, testing::IsEmpty());
+
+  fs::rename(c / "normal", c / "no\u0308rmal");
+  EXPECT_EQ(openCapture(c, {"n\u00f6rmal"}).maps.at(0).name, "n\u00f6rmal");
+  io::writeTextFile(c / "capture.json", R"({"expressions": ["\u00e9", "e01"], "maps": {"n\u00f6rmal": {}},
+                                            "expression_meshes": {"e\u0301": "neutral.obj"}})");
+  EXPECT_THAT(openCapture(c).expression_meshes, ElementsAre(c / "neutral.obj", c / "expressions/e01.obj"));
+  io::writeTextFile(c / "capture.json",
+                    R"({"expression_meshes": {"e\u0301": "neutral.obj", "\u00e9": "neutral.obj"}})");
+  EXPECT_THAT(failure(c), HasSubstr("expression_meshes: expected each name once"));
+  fs::remove(c / "capture.json");
+  fs::copy_file(c / "albedo/e01.png", c / "albedo/\u00e9.png");
+  EXPECT_THAT(failure(c), HasSubstr("expected one texture"));
+  fs::remove(c / "albedo/\u00e9.png");
+  fs::copy_file(c / "neutral.obj", c / "expressions/\u00e9.obj");
+  EXPECT_THAT(failure(c), HasSubstr("expected one file, got two, whose names"));
+}
+
+TEST(Capture, FoldersOfPreviewsAndReferencesAreNoMaps) {
+  const test::TemporaryDirectory folder;
+  const fs::path c = folder / "c";
+  test::writeSmallCapture(c, {.expressions = 2, .width = 8, .height = 8});
+  fs::create_directory(c / "expressions");
+  for (const char* name : {"e00", "e01"}) {
+    fs::copy_file(c / "neutral.obj", c / "expressions" / (std::string(name) + ".obj"));
+    fs::copy_file(c / "albedo/e00.png", c / "expressions" / (std::string(name) + ".png"));
+  }
+  fs::create_directory(c / "reference");
+  for (const char* name : {"left.png", "left.tif", "right.png"}) {
+    fs::copy_file(c / "albedo/e00.png", c / "reference" / name);
+  }
+  Notes notes;
+  const Capture capture = openCapture(c, {}, &notes);
+  ASSERT_EQ(capture.maps.size(), 1u);
+  EXPECT_THAT(capture.expressions, ElementsAre("e00", "e01"));
+  EXPECT_THAT(notes.all, ElementsAre(HasSubstr("expressions: its images are no map's, since meshes are there"),
+                                     HasSubstr("reference: its images are no map's, since none is the neutral's")));
+  fs::copy_file(c / "albedo/e00.png", c / "expressions/neutral.png");
+  EXPECT_EQ(openCapture(c).maps.size(), 1u);
+  EXPECT_EQ(openCapture(c, {"expressions"}).maps.size(), 1u) << "by its name it is one";
+  // What lacks its neutral, or an expression, is a map to be mended: nothing of it is dropped silently.
+  fs::rename(c / "reference/left.png", c / "reference/e00.png");
+  EXPECT_THAT(failure(c), testing::AllOf(HasSubstr("reference/neutral.png: map \"reference\""),
+                                         HasSubstr("leave reference/ out with --maps albedo, or list")));
+  // So is the one that is in the way: fewer maps have what it has.
+  fs::copy(c / "albedo", c / "normal");
+  fs::copy(c / "albedo", c / "specular");
+  fs::copy_file(c / "albedo/e00.png", c / "normal/grin.png");
+  fs::rename(c / "reference", folder / "reference");
+  EXPECT_THAT(failure(c), testing::AllOf(HasSubstr("albedo/grin.png: map \"albedo\""),
+                                         HasSubstr("leave normal/ out with --maps albedo,specular, or")));
+  fs::remove_all(c / "normal");
+  fs::remove_all(c / "specular");
+  // Where nothing else is a map, the images beside the meshes are.
+  fs::rename(c / "albedo", folder / "albedo");
+  EXPECT_EQ(openCapture(c).maps.at(0).name, "expressions");
+}
+
+TEST(Capture, OfFaceScapeIsDescribedNotRenamed) {
+  const test::TemporaryDirectory folder;
+  const fs::path c = folder / "122";
+  test::writeSmallCapture(folder / "small", {.expressions = 2, .width = 8, .height = 8});
+  for (const char* name : {"1_neutral", "2_smile", "3_mouth_stretch"}) {
+    for (const char* to : {"models_reg/NAME.obj", "models_reg/NAME.jpg", "dpmap/NAME.png"}) {
+      const fs::path file = c / std::string(to).replace(std::string(to).find("NAME"), 4, name);
+      fs::create_directories(file.parent_path());
+      fs::copy_file(folder / (file.extension() == ".obj" ? "small/neutral.obj" : "small/albedo/e00.png"), file);
+    }
+  }
+  io::writeTextFile(c / "capture.json", R"({"neutral": "1_neutral", "meshes": "models_reg",
+      "maps": {"albedo": {"folder": "models_reg", "colour_space": "sRGB"}, "displacement": {"folder": "dpmap"}}})");
+  Notes notes;
+  const Capture capture = openCapture(c, {}, &notes);
+  EXPECT_THAT(notes.all, testing::IsEmpty());
+  EXPECT_EQ(capture.neutral_mesh, c / "models_reg/1_neutral.obj");
+  EXPECT_THAT(capture.expressions, ElementsAre("2_smile", "3_mouth_stretch"));
+  EXPECT_EQ(capture.expression_meshes[0], c / "models_reg/2_smile.obj");
+  ASSERT_EQ(capture.maps.size(), 2u);
+  EXPECT_EQ(capture.maps[0].neutral, c / "models_reg/1_neutral.jpg");
+  EXPECT_EQ(capture.maps[1].expressions[1], c / "dpmap/3_mouth_stretch.png");
+  io::writeTextFile(c / "capture.json", R"({"neutral": "1_neutral", "neutral_mesh": "models_reg/1_neutral.obj",
+      "meshes": "model_reg", "maps": {"albedo": {"folder": "models_reg"}}})");
+  EXPECT_THAT(failure(c), testing::AllOf(HasSubstr("capture.json: meshes: expected a folder of OBJ files"),
+                                         HasSubstr("model_reg, which is not there")));
+}
+
+TEST(Capture, NeutralsOfTheIctFaceKitAreFound) {
+  const test::TemporaryDirectory folder;
+  const fs::path c = folder / "c";
+  test::writeSmallCapture(c, {.expressions = 2, .width = 8, .height = 8});
+  fs::rename(c / "neutral.obj", c / "generic_neutral_mesh.obj");
+  for (const char* name : {"identity000.obj", "e00.obj", "e01.obj"}) {
+    fs::copy_file(c / "generic_neutral_mesh.obj", c / name);
+  }
+  Notes notes;
+  const Capture capture = openCapture(c, {}, &notes);
+  EXPECT_EQ(capture.neutral_mesh, c / "generic_neutral_mesh.obj");
+  EXPECT_THAT(capture.expression_meshes, ElementsAre(c / "e00.obj", c / "e01.obj"));
+  EXPECT_THAT(notes.all, ElementsAre(HasSubstr("taken for the meshes")));
+  fs::copy_file(c / "generic_neutral_mesh.obj", c / "neutral.obj");
+  EXPECT_EQ(openCapture(c).neutral_mesh, c / "neutral.obj");
 }
 
 TEST(Capture, HasTheNameOfItsDirectoryHoweverThatIsWritten) {

@@ -135,6 +135,10 @@ const tests = {
       assert.equal((await said(text)).includes('1 frames'), wanted, JSON.stringify(text));
     }
     assert.match(await said(`${names[0]}\n-1000000\n`), /1 frames/);
+    // Of face trackers: time and turns of the head, columns of nobody, per cent, rows without a face.
+    const tracked = 'Timecode,BlendShapeCount,' + names[0].toUpperCase() + ',nobody,HeadYaw\n00:00:01:02.3,61,70,x,0.1\n00:00:01:03.3,0\n';
+    assert.ok(taken(tracked));
+    assert.match(await said(tracked), /2 frames; no expression is called nobody; weights up to 70: 1 is the whole/);
     for (const weight of ['1000001', '-2e6', '1e39', '0x10']) {
       assert.match(await said(`${names[0]}\n${weight}\n`), /line 2, column 1: ".*" is not a number from -1000000 to 1000000/);
     }
@@ -223,6 +227,37 @@ await run('a package without mesh and normals is shown flat', async () => {
   assert.deepEqual(flat.errors, []);
   await flat.close();
   bare.stop();
+});
+
+await run('textures in blocks go to the GPU, and give what blend gives', async () => {
+  for (const format of ['bc7', 'astc-5x5']) {
+    const path = join(packages, format);
+    const shown = await serve(path);
+    const page = await open(browser, shown.url);
+    const own = JSON.parse(readFileSync(join(path, 'package.json')));
+    for (const weights of [{}, { [names[1]]: 0.37, [names[3]]: 0.8 }]) {
+      const largest = await blendDifference({ facezip, packagePath: path, description: own, work }, page, bake, weights);
+      console.log(`  ${format}: largest difference ${largest}/255 at ${JSON.stringify(weights)}`);
+      assert.ok(largest <= 1.5, `${largest}/255`);
+    }
+    await screenshot(page, `blocks_${format}`);
+    assert.deepEqual(page.errors, []);
+    await page.close();
+    shown.stop();
+  }
+});
+await run('it says which blocks a graphics driver lacks', async () => {
+  const shown = await serve(join(packages, 'astc-5x5'));
+  const refused = await browser.newPage();
+  await refused.addInitScript(() => {
+    const get = WebGL2RenderingContext.prototype.getExtension;
+    WebGL2RenderingContext.prototype.getExtension = function (name) { return /astc/.test(name) ? null : get.call(this, name); };
+  });
+  await refused.goto(shown.url);
+  await refused.waitForSelector('#message:not([hidden])');
+  assert.match(await refused.locator('#message').textContent(), /astc-5x5 blocks, which this graphics driver does not sample/);
+  await refused.close();
+  shown.stop();
 });
 
 await run('a clip weighs an expression called time', async () => {

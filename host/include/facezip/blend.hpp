@@ -13,11 +13,14 @@
 #include "facezip/device.hpp"
 #include "facezip/gain.hpp"
 #include "facezip/package.hpp"
+#include "facezip/progress.hpp"
 
 namespace facezip {
 
 /// Of a blendshape weight, either way: a million times an expression is a mistake, and floats overflow not far above.
 inline constexpr float kLargestWeight = 1e6f;
+/// Beyond it, either way, a weight is noted: rigs drive shapes a little beyond 1, and people write per cent.
+inline constexpr float kUsualWeight = 2.0f;
 
 /// Blends frames of one package:  T(p) = I_0(p) + sum_i D_i(p) w_i(p),  w_i = bilinear(sum_n beta_n W_n[i])  (Eq. 8).
 /// The textures go to the device once; frames then cost no upload and no allocation of texels.
@@ -54,9 +57,11 @@ class Blender {
   std::unique_ptr<State> state_;
 };
 
-/// A weight vector from names: beta of every expression that is not named is 0.
-/// Throws InputError for a name that the package does not have, with the nearest names that it has, and for a name that
-/// is given twice.
+/// A weight vector from names: beta of every expression that is not named is 0. A name may be another one of the same
+/// blendshape: ARKit's mouthSmileLeft is mouthSmile_L and AU12L, upper and lower case alike; AU12 is both sides, and an
+/// expression AU12 gets half of the weights of mouthSmileLeft and mouthSmileRight. Exact names go first.
+/// Throws InputError for a name that the package does not have, with the nearest names that it has, and for an
+/// expression that is named twice.
 std::vector<float> weightsByName(const Package& package, const std::vector<std::pair<std::string, float>>& weights);
 
 /// Reads "smile=0.7,jawOpen=0.2"; blanks around names and values are ignored, the empty text is no weights.
@@ -75,10 +80,13 @@ struct AnimationClip {
   }
 };
 
-/// Reads a comma-separated table: a header of expression names in any order, then a row of weights a frame. Expressions
-/// without a column stay 0; columns named "frame" or "time" (upper and lower case alike) are skipped unless the package
-/// has an expression of that name; empty lines too.
-/// Throws InputError naming file, line and column.
-AnimationClip readAnimation(const std::filesystem::path& file, const Package& package);
+/// Reads a comma-separated table: a header of expression names in any order, then a row of weights a frame. Names are
+/// those that weightsByName() takes. Expressions without a column stay 0; columns that no expression is called are
+/// skipped, and empty lines. A row whose column "BlendShapeCount" is 0, as Live Link Face writes where it finds no
+/// face, repeats the frame before. progress  notes skipped columns, but for what trackers write beside weights (time,
+/// turns of the head), and weights
+///           above 2, which are per cent, most likely; may be null
+/// Throws InputError naming file, line and column: no column of an expression, two of one, a weight that is no number.
+AnimationClip readAnimation(const std::filesystem::path& file, const Package& package, Progress* progress = nullptr);
 
 }  // namespace facezip

@@ -88,7 +88,8 @@ FACEZIP_RUNTIME_API int32_t facezip_expression_count(const facezip_package* pack
 /** Name of expression 0 .. N - 1; null out of range. Lives as long as the package. */
 FACEZIP_RUNTIME_API const char* facezip_expression_name(const facezip_package* package, int32_t expression);
 
-/** Index of the expression of that name, -1 if there is none. */
+/** Index of the expression of that name, or of the one that shows the same blendshape: mouthSmileLeft is mouthSmile_L; -1 if
+ *  there is none. */
 FACEZIP_RUNTIME_API int32_t facezip_find_expression(const facezip_package* package, const char* name);
 
 /** Number of maps; 0 for null. */

@@ -1,14 +1,18 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <optional>
 #include <sstream>
 #include <string>
 
 #include "blend/names.hpp"
 #include "blend/number.hpp"
+#include "blend/shape_names.hpp"
 #include "facezip/blend.hpp"
+#include "facezip/nearest_names.hpp"
 #include "io/counts.hpp"
 #include "io/read_file.hpp"
 #include "package/package_json.hpp"
@@ -16,7 +20,7 @@
 namespace facezip {
 namespace {
 
-constexpr int kSkippedColumn = -1;
+std::string lineItem(std::size_t line) { return fmt::format("line {}", line); }
 
 std::string fieldItem(std::size_t line, std::size_t column) {
   return fmt::format("line {}, column {}", line, column + 1);
@@ -35,79 +39,130 @@ std::vector<std::string> splitLine(std::string_view line) {
   return fields;
 }
 
-bool isTimeColumn(std::string name) {
-  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
-  return name == "frame" || name == "time";
+/// What the columns of a table hold.
+struct Header {
+  std::vector<std::string> names;
+  std::vector<std::vector<blend::Drive>> drives;  ///< none: the column is skipped
+  std::optional<std::size_t> shape_count;         ///< the column of "BlendShapeCount"
+};
+
+bool isShapeCount(std::string name) {
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return name == "blendshapecount";
 }
 
-/// Expression of each column, kSkippedColumn for time. Names of the package go first: an expression may be called
-/// "time".
-std::vector<int> parseHeader(const std::string& line, std::size_t line_number, const std::filesystem::path& file,
-                             const Package& package) {
-  std::vector<int> columns;
-  for (const std::string& name : splitLine(line)) {
-    const std::string item = fieldItem(line_number, columns.size());
-    const std::vector<std::string>& names = package.expressions();
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end() && isTimeColumn(name)) {
-      columns.push_back(kSkippedColumn);
-      continue;
+Header parseHeader(const std::string& line, std::size_t line_number, const std::filesystem::path& file,
+                   const Package& package) {
+  Header header{splitLine(line), {}, std::nullopt};
+  const std::vector<blend::NameMatch> matches = blend::matchNames(header.names, package.expressions());
+  bool any = false;
+  for (std::size_t column = 0; column < matches.size(); ++column) {
+    if (const auto earlier = matches[column].repeats) {
+      const std::string& name = header.names[column];
+      throw InputError({file.string(), fieldItem(line_number, column), "each expression once",
+                        name == header.names[*earlier]
+                            ? package::quoted(name) + " twice"
+                            : package::quoted(header.names[*earlier]) + " and " + package::quoted(name),
+                        ""});
     }
-    if (found == names.end()) {
-      throw InputError({file.string(), item, "an expression of the package", package::quoted(name),
-                        fmt::format("the nearest is {}", blend::nearestNames(name, names, 1).front())});
-    }
-    const int n = static_cast<int>(found - names.begin());
-    if (std::find(columns.begin(), columns.end(), n) != columns.end()) {
-      throw InputError({file.string(), item, "each expression once", package::quoted(name) + " twice", ""});
-    }
-    columns.push_back(n);
+    header.drives.push_back(matches[column].drives);
+    any = any || !header.drives.back().empty();
+    if (header.drives.back().empty() && isShapeCount(header.names[column])) header.shape_count = column;
   }
-  return columns;
+  if (any) return header;
+  const auto named = std::ranges::find_if_not(header.names, blend::isNoShape);
+  const std::string name = named == header.names.end() ? "" : *named;
+  throw InputError({file.string(), lineItem(line_number), "names of expressions of the package", package::quoted(line),
+                    fmt::format("the nearest to {} is {}", package::quoted(name),
+                                nearestNames(name, package.expressions(), 1).front())});
+}
+
+/// Says which columns nothing comes of: a misspelt name would otherwise go unnoticed.
+void noteSkipped(const Header& header, const std::filesystem::path& file, const Package& package, Progress& progress) {
+  constexpr std::size_t kMostListed = 8;
+  std::vector<std::string> skipped, shown;
+  for (std::size_t column = 0; column < header.names.size(); ++column) {
+    const std::string& name = header.names[column];
+    if (header.drives[column].empty() && !name.empty() && !blend::isNoShape(name)) skipped.push_back(name);
+  }
+  if (skipped.empty()) return;
+  const std::size_t listed = std::min(skipped.size(), kMostListed);
+  for (std::size_t i = 0; i < listed; ++i) shown.push_back(package::quoted(skipped[i]));
+  std::string text =
+      fmt::format("{}: columns skipped, since no expression is called so: {}", file.string(), fmt::join(shown, ", "));
+  if (listed < skipped.size()) text += fmt::format(" and {} more", skipped.size() - listed);
+  progress.note(fmt::format("{} (the nearest to the first is {})", text,
+                            nearestNames(skipped.front(), package.expressions(), 1).front()));
+}
+
+/// The largest weight, either way, and where it stands.
+struct Largest {
+  float weight = 0.0f;
+  std::string item;
+};
+
+/// Live Link Face writes rows of no shapes, some without the other fields, while it sees no face.
+bool hasNoFace(const Header& header, const std::vector<std::string>& fields) {
+  return header.shape_count && *header.shape_count < fields.size() && fields[*header.shape_count] == "0";
 }
 
 void appendFrame(const std::string& line, std::size_t line_number, const std::filesystem::path& file,
-                 const std::vector<int>& columns, AnimationClip& clip) {
+                 const Header& header, AnimationClip& clip, Largest& largest) {
   const std::vector<std::string> fields = splitLine(line);
-  if (fields.size() != columns.size()) {
-    throw InputError({file.string(), fmt::format("line {}", line_number), fmt::format("{} columns", columns.size()),
-                      fmt::format("{}", fields.size()), ""});
-  }
   const std::size_t frame = clip.weights.size();
   clip.weights.resize(frame + toSize(clip.expressions), 0.0f);
+  if (hasNoFace(header, fields)) {
+    if (frame > 0)
+      std::copy_n(clip.weights.end() - 2 * clip.expressions, clip.expressions, clip.weights.end() - clip.expressions);
+    return;
+  }
+  if (fields.size() != header.names.size()) {
+    throw InputError({file.string(), lineItem(line_number), fmt::format("{} columns", header.names.size()),
+                      fmt::format("{}", fields.size()), ""});
+  }
   for (std::size_t column = 0; column < fields.size(); ++column) {
-    if (columns[column] == kSkippedColumn) continue;
+    if (header.drives[column].empty()) continue;
     const std::optional<float> weight = blend::parseNumber(fields[column]);
     if (!weight || std::abs(*weight) > kLargestWeight) {
       throw InputError({file.string(), fieldItem(line_number, column),
                         fmt::format("a number of at most {:g} either way", kLargestWeight),
                         package::quoted(fields[column]), ""});
     }
-    clip.weights[frame + toSize(columns[column])] = *weight;
+    for (const blend::Drive& drive : header.drives[column]) {
+      clip.weights[frame + drive.expression] += drive.share * *weight;
+    }
+    if (std::abs(*weight) > std::abs(largest.weight)) largest = {*weight, fieldItem(line_number, column)};
   }
 }
 
 }  // namespace
 
-AnimationClip readAnimation(const std::filesystem::path& file, const Package& package) {
+AnimationClip readAnimation(const std::filesystem::path& file, const Package& package, Progress* progress) {
   constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 30;
   std::istringstream stream(io::readFile(file, "a table of blendshape weights", "", kMostBytes));
   AnimationClip clip;
   clip.expressions = static_cast<int>(package.expressions().size());
-  std::vector<int> columns;
+  std::optional<Header> header;
+  Largest largest;
   std::string line;
   for (std::size_t line_number = 1; std::getline(stream, line); ++line_number) {
     if (line_number == 1 && line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);  // spreadsheets write a byte order mark
     if (blend::trimmed(line).empty()) continue;
-    if (columns.empty()) {
-      columns = parseHeader(line, line_number, file, package);
+    if (header) {
+      appendFrame(line, line_number, file, *header, clip, largest);
     } else {
-      appendFrame(line, line_number, file, columns, clip);
+      header = parseHeader(line, line_number, file, package);
     }
   }
-  if (columns.empty()) throw InputError({file.string(), "", "a header of expression names", "an empty file", ""});
+  if (!header) throw InputError({file.string(), "", "a header of expression names", "an empty file", ""});
   if (clip.weights.empty())
     throw InputError({file.string(), "", "a row of weights for each frame", "a header alone", ""});
+  if (progress == nullptr) return clip;
+  noteSkipped(*header, file, package, *progress);
+  if (std::abs(largest.weight) > kUsualWeight) {
+    progress->note(fmt::format("{}: weights up to {:g} ({}): 1 is the whole expression; are these per cent?",
+                               file.string(), largest.weight, largest.item));
+  }
   return clip;
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "image/image_file.hpp"
+#include "io/composed.hpp"
 #include "io/counts.hpp"
 #include "io/read_file.hpp"
 #include "package/guides.hpp"
@@ -40,7 +41,7 @@ void requirePresetOf(const package::JsonField& document, const Package& package,
 void readFactors(const package::JsonField& field, const std::vector<std::string>& names, const char* what,
                  std::vector<float>& gains) {
   for (const auto& [name, value] : field.object().items()) {
-    const auto found = std::ranges::find(names, name);
+    const auto found = std::ranges::find(names, io::composed(name));
     if (found == names.end()) {
       field.fail(fmt::format("{}s of the package ({})", what, fmt::join(names, ", ")), package::quoted(name));
     }

@@ -4,56 +4,29 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
-#include <numeric>
 
 #include "blend/number.hpp"
+#include "blend/shape_names.hpp"
 #include "facezip/blend.hpp"
+#include "facezip/nearest_names.hpp"
 #include "io/counts.hpp"
 #include "package/package_json.hpp"
 
 namespace facezip {
 namespace blend {
 
-int editDistance(std::string_view a, std::string_view b) {
-  const auto same = [](char x, char y) {
-    return std::tolower(static_cast<unsigned char>(x)) == std::tolower(static_cast<unsigned char>(y));
-  };
-  // Rows i-2, i-1 and i of the table; a swap of neighbours reaches back two.
-  std::vector<int> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
-  std::iota(above.begin(), above.end(), 0);
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    row[0] = static_cast<int>(i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      row[j] = std::min({above[j] + 1, row[j - 1] + 1, above[j - 1] + (same(a[i - 1], b[j - 1]) ? 0 : 1)});
-      const bool swapped = i > 1 && j > 1 && same(a[i - 1], b[j - 2]) && same(a[i - 2], b[j - 1]);
-      if (swapped) row[j] = std::min(row[j], before[j - 2] + 1);
-    }
-    std::swap(before, above);
-    std::swap(above, row);
-  }
-  return above[b.size()];
-}
-
-std::vector<std::string> nearestNames(const std::string& name, const std::vector<std::string>& names,
-                                      std::size_t most) {
-  std::vector<std::pair<int, std::size_t>> ranked;
-  for (std::size_t n = 0; n < names.size(); ++n) ranked.emplace_back(editDistance(name, names[n]), n);
-  std::sort(ranked.begin(), ranked.end());
-  std::vector<std::string> nearest;
-  for (std::size_t r = 0; r < std::min(most, ranked.size()); ++r) nearest.push_back(names[ranked[r].second]);
-  return nearest;
+void refuseUnknown(const Package& package, const std::string& name, const std::string& item) {
+  throw InputError({package.directory().string(), item, "an expression of the package", package::quoted(name),
+                    fmt::format("the nearest are {}", fmt::join(nearestNames(name, package.expressions()), ", "))});
 }
 
 int expressionIndex(const Package& package, const std::string& name, const std::string& item) {
-  const std::vector<std::string>& names = package.expressions();
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found != names.end()) return static_cast<int>(found - names.begin());
-  throw InputError({package.directory().string(), item, "an expression of the package", package::quoted(name),
-                    fmt::format("the nearest are {}", fmt::join(nearestNames(name, names), ", "))});
+  const auto found = findName(name, package.expressions());
+  if (!found) refuseUnknown(package, name, item);
+  return static_cast<int>(*found);
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -92,17 +65,26 @@ std::optional<float> parseNumber(std::string_view text) {
 }  // namespace blend
 
 std::vector<float> weightsByName(const Package& package, const std::vector<std::pair<std::string, float>>& weights) {
+  std::vector<std::string> given;
+  for (const auto& [name, weight] : weights) given.push_back(name);
+  const std::vector<blend::NameMatch> matches = blend::matchNames(given, package.expressions());
   std::vector<float> beta(package.expressions().size(), 0.0f);
-  std::vector<bool> given(beta.size(), false);
-  for (const auto& [name, weight] : weights) {
-    const std::size_t n = toSize(blend::expressionIndex(package, name, "weights"));
-    if (given[n]) throw InputError({"", "weights", "each expression once", package::quoted(name) + " twice", ""});
+  for (std::size_t g = 0; g < given.size(); ++g) {
+    const float weight = weights[g].second;
+    if (const auto earlier = matches[g].repeats) {
+      throw InputError({"", "weights", "each expression once",
+                        given[g] == given[*earlier]
+                            ? package::quoted(given[g]) + " twice"
+                            : package::quoted(given[*earlier]) + " and " + package::quoted(given[g]),
+                        ""});
+    }
+    if (matches[g].drives.empty()) blend::refuseUnknown(package, given[g], "weights");
     if (!(std::abs(weight) <= kLargestWeight)) {
-      throw InputError({"", "weights", fmt::format("a number of at most {:g} either way for {}", kLargestWeight, name),
+      throw InputError({"", "weights",
+                        fmt::format("a number of at most {:g} either way for {}", kLargestWeight, given[g]),
                         fmt::format("{:g}", weight), ""});
     }
-    given[n] = true;
-    beta[n] = weight;
+    for (const blend::Drive& drive : matches[g].drives) beta[drive.expression] += drive.share * weight;
   }
   return beta;
 }

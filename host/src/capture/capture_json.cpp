@@ -1,6 +1,7 @@
 #include "capture/capture_json.hpp"
 
 #include "facezip/error.hpp"
+#include "io/composed.hpp"
 #include "io/read_file.hpp"
 #include "package/json_field.hpp"
 #include "package/package_json.hpp"
@@ -16,16 +17,28 @@ std::string optionalText(const JsonField& object, const std::string& key) {
   return object.has(key) ? object[key].text() : "";
 }
 
-std::map<std::string, std::string> filesByExpression(const JsonField& field) {
-  std::map<std::string, std::string> files;
-  for (const auto& [expression, file] : field.object().items()) files[expression] = field[expression].text();
-  return files;
+/// What `read` makes of each member of an object, by its name. A name that stands there twice, spelt in two ways, is
+/// refused.
+template <typename Read>
+auto byName(const JsonField& object, const Read& read) {
+  std::map<std::string, decltype(read(object))> found;
+  for (const auto& member : object.object().items()) {
+    const JsonField field = object[member.key()];
+    if (found.emplace(io::composed(member.key()), read(field)).second) continue;
+    object.fail("each name once", package::quoted(member.key()) + " twice", kCure);
+  }
+  return found;
+}
+
+std::map<std::string, std::string> filesByExpression(const JsonField& object) {
+  return byName(object, [](const JsonField& file) { return file.text(); });
 }
 
 CaptureJson::Map readMap(const JsonField& field) {
   CaptureJson::Map map;
   if (field.has("colour_space")) map.colour_space = package::parseColourSpace(field["colour_space"]);
   if (field.has("weight")) map.weight = package::parseMetricWeight(field["weight"]);
+  map.folder = optionalText(field, "folder");
   map.neutral = optionalText(field, "neutral");
   if (field.has("expressions")) map.expressions = filesByExpression(field["expressions"]);
   return map;
@@ -41,21 +54,21 @@ std::optional<CaptureJson> readCaptureJson(const fs::path& file) {
       package::parseJson(io::readFile(file, "the description of a capture"), file.string(), kCure);
   const JsonField root(json, file.string(), "", kCure);
   CaptureJson description;
-  description.name = optionalText(root, "name");
+  description.name = io::composed(optionalText(root, "name"));
   description.unit = optionalText(root, "unit");
+  description.neutral = io::composed(optionalText(root, "neutral"));
+  description.meshes = optionalText(root, "meshes");
   description.neutral_mesh = optionalText(root, "neutral_mesh");
   description.face_region = optionalText(root, "face_region");
   description.coverage = optionalText(root, "coverage");
   description.importance = optionalText(root, "importance");
   if (root.has("expressions")) {
     for (const JsonField& name : root["expressions"].elements(0, package::kMaxExpressions)) {
-      description.expressions.push_back(name.text());
+      description.expressions.push_back(io::composed(name.text()));
     }
   }
   if (root.has("expression_meshes")) description.expression_meshes = filesByExpression(root["expression_meshes"]);
-  if (!root.has("maps")) return description;
-  const JsonField maps = root["maps"];
-  for (const auto& [name, map] : maps.object().items()) description.maps[name] = readMap(maps[name]);
+  if (root.has("maps")) description.maps = byName(root["maps"], readMap);
   return description;
 }
 

@@ -9,17 +9,22 @@
 
 namespace facezip {
 
-/// What capture.json says; everything is optional.
+inline constexpr const char* kCaptureFile = "capture.json";
+
+/// What capture.json says; everything is optional. Names are composed (io/composed.hpp).
 struct CaptureJson {
   struct Map {
     std::string colour_space;
     double weight = 1.0;
+    std::string folder;                              ///< relative to the capture; "": the one of the map's name
     std::string neutral;                             ///< file relative to the capture, "" if not named
     std::map<std::string, std::string> expressions;  ///< expression to file relative to the capture
   };
   std::string name;
   std::string unit;
+  std::string neutral;  ///< what the neutral's files are called; "": "neutral"
   std::string neutral_mesh;
+  std::string meshes;  ///< folder of the expressions' meshes, relative to the capture; "" if not named
   std::string face_region;
   std::string coverage;
   std::string importance;

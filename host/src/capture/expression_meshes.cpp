@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <system_error>
 
+#include "capture/mesh_names.hpp"
 #include "facezip/geometry/obj_io.hpp"
+#include "io/composed.hpp"
 
 namespace facezip {
 namespace fs = std::filesystem;
@@ -22,8 +24,25 @@ Meshes meshesIn(const fs::path& folder) {
   Meshes meshes;
   std::error_code error;
   if (!fs::exists(folder, error) && !error) return meshes;
-  for (const fs::path& file : geometry::objFiles(folder)) meshes.emplace(file.stem().string(), file);
+  for (const fs::path& file : geometry::objFiles(folder)) {
+    const std::string name = io::composed(file.stem().string());
+    const auto [it, inserted] = meshes.emplace(name, file);
+    if (inserted) continue;
+    throw InputError({folder.string(), fmt::format("mesh \"{}\"", name), "one file",
+                      "two, whose names are spelt with other characters and look alike", "remove one"});
+  }
   return meshes;
+}
+
+/// Those of the folder that capture.json names.
+Meshes namedMeshes(const fs::path& capture, const fs::path& folder) {
+  Meshes meshes = meshesIn(folder);
+  if (!meshes.empty()) return meshes;
+  std::error_code error;
+  throw InputError(
+      {(capture / kCaptureFile).string(), "meshes", "a folder of OBJ files",
+       fmt::format("{}, {}", folder.string(), fs::exists(folder, error) ? "with none" : "which is not there"),
+       "name the folder of the expressions' meshes"});
 }
 
 bool isExpression(const std::string& name, const std::vector<std::string>& expressions) {
@@ -57,7 +76,9 @@ OtherFolders otherFolders(const fs::path& capture, const std::vector<std::string
   std::sort(folders.begin(), folders.end());
   for (const fs::path& folder : folders) {
     Meshes meshes = meshesIn(folder);
-    const bool has_neutral = meshes.erase("neutral") > 0 && folder != capture;
+    const bool has_neutral =
+        std::erase_if(meshes, [](const auto& mesh) { return isNeutralMesh(mesh.first); }) > 0 && folder != capture;
+    std::erase_if(meshes, [](const auto& mesh) { return isIdentityMesh(mesh.first); });
     const bool matches = std::any_of(meshes.begin(), meshes.end(),
                                      [&](const auto& mesh) { return isExpression(mesh.first, expressions); });
     if (matches && !has_neutral) {
@@ -78,11 +99,13 @@ std::string namesOf(const std::vector<fs::path>& folders, const fs::path& captur
 }
 
 /// Says which meshes stay unused and who lacks one: a misspelt name would otherwise go unnoticed.
-void noteUnmatched(const fs::path& folder, const Meshes& meshes, const std::vector<std::string>& expressions,
-                   const std::vector<fs::path>& taken, Progress& progress) {
+void noteUnmatched(const fs::path& folder, const Meshes& meshes, const std::string& neutral,
+                   const std::vector<std::string>& expressions, const std::vector<fs::path>& taken,
+                   Progress& progress) {
   std::vector<std::string> unused, lacking;
   for (const auto& [name, file] : meshes) {
-    if (!isExpression(name, expressions) && name != "neutral") unused.push_back(file.filename().string());
+    if (!isExpression(name, expressions) && name != neutral && !isNeutralMesh(name))
+      unused.push_back(file.filename().string());
   }
   for (std::size_t n = 0; n < expressions.size(); ++n) {
     if (taken[n].empty()) lacking.push_back(expressions[n]);
@@ -111,10 +134,12 @@ void noteNone(const fs::path& capture, const OtherFolders& others, Progress& pro
 
 }  // namespace
 
-std::vector<fs::path> findExpressionMeshes(const fs::path& capture, const std::map<std::string, std::string>& named,
+std::vector<fs::path> findExpressionMeshes(const fs::path& capture, const CaptureJson& description,
                                            const std::vector<std::string>& expressions, Progress* progress) {
-  fs::path folder = capture / kUsualFolder;
-  Meshes meshes = meshesIn(folder);
+  const bool is_named = !description.meshes.empty();
+  const std::map<std::string, std::string>& named = description.expression_meshes;
+  fs::path folder = capture / (is_named ? description.meshes : kUsualFolder);
+  Meshes meshes = is_named ? namedMeshes(capture, folder) : meshesIn(folder);
   OtherFolders others;
   if (meshes.empty() && named.empty()) {
     others = otherFolders(capture, expressions);
@@ -136,7 +161,7 @@ std::vector<fs::path> findExpressionMeshes(const fs::path& capture, const std::m
                                            : fs::path());
   }
   if (progress == nullptr) return taken;
-  noteUnmatched(folder, meshes, expressions, taken, *progress);
+  noteUnmatched(folder, meshes, description.neutral, expressions, taken, *progress);
   if (std::all_of(taken.begin(), taken.end(), [](const fs::path& mesh) { return mesh.empty(); })) {
     noteNone(capture, others, *progress);
   }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -36,18 +37,24 @@ enum class Textures {
 /// package; without it, a copy.
 struct Target {
   std::vector<std::string> files;
+  std::vector<exporting::MapRole> roles;  ///< that its material shows
   Textures textures = Textures::kPackage;
   void (*write)(const Package& package, const fs::path& folder, Progress& progress) = nullptr;
 };
 
 const std::map<std::string, Target>& targets() {
+  using exporting::MapRole;
+  static const std::vector<MapRole> every = {MapRole::kAlbedo, MapRole::kNormal, MapRole::kRoughness,
+                                             MapRole::kOcclusion};
+  // Cycles finds occlusion itself.
+  static const std::vector<MapRole> traced = {MapRole::kAlbedo, MapRole::kNormal, MapRole::kRoughness};
   static const std::map<std::string, Target> all = {
-      {"gltf", {{"gltf.md", "facezip_blend.h"}}},
-      {"three", {{"three.md", "facezip_three.js"}}},
-      {"blender", {{"blender.md", "facezip_blender.py"}}},
-      {"godot", {{"godot.md", "facezip_face.gd", "demo.gd"}, Textures::kNone, exporting::writeGodot}},
-      {"unity", {{"unity.md", "FaceZipDriver.cs", "FaceZipImport.cs"}, Textures::kOwn, exporting::writeUnity}},
-      {"unreal", {{"unreal.md", "facezip_unreal.py"}, Textures::kNone, exporting::writeUnreal}}};
+      {"gltf", {{"gltf.md", "facezip_blend.h"}, every}},
+      {"three", {{"three.md", "facezip_three.js"}, every}},
+      {"blender", {{"blender.md", "facezip_blender.py"}, traced}},
+      {"godot", {{"godot.md", "facezip_face.gd", "demo.gd"}, every, Textures::kNone, exporting::writeGodot}},
+      {"unity", {{"unity.md", "FaceZipDriver.cs", "FaceZipImport.cs"}, every, Textures::kOwn, exporting::writeUnity}},
+      {"unreal", {{"unreal.md", "facezip_unreal.py"}, every, Textures::kNone, exporting::writeUnreal}}};
   return all;
 }
 
@@ -70,11 +77,18 @@ void copyPackage(const Package& package, const fs::path& folder, std::uint64_t m
   }
 }
 
-/// The blend for readers of glTF: package.json as it is but for how it was made, which is unstable.
+/// The blend for readers of glTF: package.json as it is but for how it was made, which is unstable, and which map is
+/// what in a material.
 nlohmann::json blendExtras(const PackageDescription& description) {
   nlohmann::json blend = nlohmann::json::parse(package::packageJson(description));
   blend.erase("method");
   blend["folder"] = "package";
+  blend["roles"] = nlohmann::json::object();
+  const std::vector<exporting::MapRole> roles = exporting::rolesOf(description.maps);
+  for (std::size_t m = 0; m < roles.size(); ++m) {
+    if (roles[m] != exporting::MapRole::kOther)
+      blend["roles"][exporting::roleName(roles[m])] = description.maps[m].name;
+  }
   return {{"facezip", blend}};
 }
 
@@ -88,9 +102,37 @@ exporting::GltfMaterial plainMaterial(const Package& package, Textures textures)
     const std::string file = own ? "textures/" + map.id + "_neutral.png" : "package/" + map.map.neutral_file;
     if (map.role == exporting::MapRole::kAlbedo) material.base_colour_texture = file;
     if (map.role == exporting::MapRole::kNormal) material.normal_texture = file;
+    if (map.role == exporting::MapRole::kRoughness) material.roughness_texture = file;
+    if (map.role == exporting::MapRole::kOcclusion) material.occlusion_texture = file;
   }
   if (!own) material.extras = blendExtras(package.description());
   return material;
+}
+
+/// A name that shells and languages take as it stands.
+bool isPlain(const std::string& name) {
+  const auto letter = [](char c) { return c == '_' || ('a' <= c && c <= 'z') || ('A' <= c && c <= 'Z'); };
+  const auto digit = [](char c) { return '0' <= c && c <= '9'; };
+  return letter(name.front()) && std::ranges::all_of(name, [&](char c) { return letter(c) || digit(c); });
+}
+
+/// A README whose examples have names of the package, so that they run as they stand.
+std::string withNames(std::string text, const Package& package) {
+  std::vector<std::pair<std::string, std::string>> names;
+  for (const std::string& name : package.expressions()) {
+    if (isPlain(name)) names.emplace_back(fmt::format("@EXPRESSION_{}@", names.size() + 1), name);
+    if (names.size() == 2) break;
+  }
+  const auto map = std::ranges::find_if(
+      package.maps(), [](const PackageMap& m) { return isPlain(m.name) && m.sample_type != SampleType::kFloat32; });
+  if (map != package.maps().end()) names.emplace_back("@MAP@", map->name);
+  for (const char* left : {"@EXPRESSION_1@", "@EXPRESSION_2@", "@MAP@"}) names.emplace_back(left, "NAME");
+  for (const auto& [placeholder, name] : names) {
+    for (std::size_t at = text.find(placeholder); at != std::string::npos; at = text.find(placeholder)) {
+      text.replace(at, placeholder.size(), name);
+    }
+  }
+  return text;
 }
 
 }  // namespace
@@ -123,11 +165,14 @@ std::vector<std::string> exportPackage(const Package& package, const std::string
   exporting::addBlendToGltf(mesh::readPackageMesh(package, memory_bytes), staged.path() / "scene.gltf",
                             plainMaterial(package, chosen.textures));
   for (const std::string& file : chosen.files) {
-    const std::string name = file.ends_with(".md") ? "README.md" : file;
-    io::writeTextFile(staged.path() / name, std::string(exporting::embeddedExportFiles().at(file)));
+    const std::string text(exporting::embeddedExportFiles().at(file));
+    const bool readme = file.ends_with(".md");
+    io::writeTextFile(staged.path() / (readme ? "README.md" : file), readme ? withNames(text, package) : text);
   }
   staged.commit();
-  return chosen.write != nullptr ? exporting::lossesOf(package) : std::vector<std::string>();
+  std::vector<std::string> notes = chosen.write != nullptr ? exporting::lossesOf(package) : std::vector<std::string>();
+  for (std::string& note : exporting::notesOfRoles(package.maps(), chosen.roles)) notes.push_back(std::move(note));
+  return notes;
 }
 
 }  // namespace facezip

@@ -8,6 +8,7 @@
 #include <system_error>
 #include <thread>
 
+#include "io/composed.hpp"
 #include "io/folder.hpp"
 #include "package/guides.hpp"
 #include "package/package_files.hpp"
@@ -75,9 +76,10 @@ Package Package::open(const fs::path& directory) {
 bool Package::wasReplaced() const { return folder_->wasReplaced(); }
 
 int Package::mapIndex(const std::string& map_name) const {
+  const std::string wanted = io::composed(map_name);
   std::vector<std::string> names;
   for (std::size_t m = 0; m < maps().size(); ++m) {
-    if (maps()[m].name == map_name) return static_cast<int>(m);
+    if (maps()[m].name == wanted) return static_cast<int>(m);
     names.push_back(maps()[m].name);
   }
   throw InputError({directory_.string(), "map", fmt::format("{}", fmt::join(names, ", ")), map_name, ""});

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "blocks/block_format.hpp"
+#include "io/composed.hpp"
 #include "package/guides.hpp"
 #include "package/json_field.hpp"
 #include "package/package_writer.hpp"
@@ -72,7 +73,8 @@ Document mapJson(const PackageMap& map) {
 void requireUnique(const std::vector<JsonField>& fields, const char* what) {
   std::set<std::string> seen;
   for (const JsonField& field : fields) {
-    if (!seen.insert(field.text()).second) field.fail(fmt::format("unique {} names", what), field.got() + " twice");
+    if (!seen.insert(io::composed(field.text())).second)
+      field.fail(fmt::format("unique {} names", what), field.got() + " twice");
   }
 }
 
@@ -228,7 +230,8 @@ void requireKnownVersion(const JsonField& document) {
 
 bool hasBlocks(const PackageDescription& description) {
   return std::ranges::any_of(description.maps, [](const PackageMap& map) {
-    return map.neutral_format || std::ranges::any_of(map.differences, [](const auto& d) { return d.format.has_value(); });
+    return map.neutral_format ||
+           std::ranges::any_of(map.differences, [](const auto& d) { return d.format.has_value(); });
   });
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "io/composed.hpp"
 #include "package/package_json.hpp"
 
 namespace facezip::package {
@@ -34,7 +35,7 @@ bool isUtf8(const std::string& text) {
 }
 
 std::string fileSafeName(const JsonField& field) {
-  const std::string name = field.text();
+  const std::string name = io::composed(field.text());
   if (const auto fault = nameFault(name)) field.fail(fault->expected, fault->got);
   return name;
 }

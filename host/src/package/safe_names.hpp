@@ -21,7 +21,7 @@ std::optional<NameFault> nameFault(const std::string& name, const std::string& f
 
 bool isUtf8(const std::string& text);
 
-/// A name without such a fault. Throws InputError.
+/// A name without such a fault, composed (io/composed.hpp). Throws InputError.
 std::string fileSafeName(const JsonField& field);
 
 /// The path of a file inside the package that ends in `extension`. Throws InputError.

@@ -4,18 +4,20 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <iterator>
 
+#include "capture/mesh_names.hpp"
 #include "facezip/error.hpp"
 #include "facezip/geometry/obj_io.hpp"
 #include "facezip/geometry/topology.hpp"
+#include "io/composed.hpp"
+#include "package/package_json.hpp"
 #include "package/safe_names.hpp"
 
 namespace facezip::rig {
 namespace fs = std::filesystem;
 namespace {
-
-bool isNeutral(const std::string& name) { return name == "neutral" || name == "generic_neutral"; }
 
 std::vector<fs::path> templateFiles(const fs::path& directory) {
   std::error_code error;
@@ -29,37 +31,92 @@ void requireName(const std::string& name, const fs::path& file) {
   if (fault) throw InputError({file.string(), "shape", fault->expected, fault->got, "rename the file"});
 }
 
-}  // namespace
+/// The OBJ files of a template.
+struct TemplateFiles {
+  fs::path neutral;
+  std::vector<std::string> names;
+  std::vector<fs::path> shapes;
+  std::size_t identities = 0;
+};
 
-RigTemplate readTemplate(const fs::path& directory) {
-  RigTemplate found;
-  std::vector<fs::path> shape_files;
+TemplateFiles sortFiles(const fs::path& directory) {
+  TemplateFiles files;
   for (const fs::path& file : templateFiles(directory)) {
-    if (!isNeutral(file.stem().string())) {
-      requireName(file.stem().string(), file);
-      found.names.push_back(file.stem().string());
-      shape_files.push_back(file);
+    const std::string name = io::composed(file.stem().string());
+    if (isIdentityMesh(name)) {
+      ++files.identities;
       continue;
     }
-    if (!found.neutral_file.empty()) {
-      throw InputError({directory.string(), "template", "one neutral",
-                        found.neutral_file.filename().string() + " and " + file.filename().string(), "remove one"});
+    if (!isNeutralMesh(name)) {
+      requireName(name, file);
+      if (std::ranges::find(files.names, name) != files.names.end()) {
+        throw InputError({file.string(), "shape", "one file of each name", package::quoted(name) + " twice",
+                          "remove one of those that are spelt alike"});
+      }
+      files.names.push_back(name);
+      files.shapes.push_back(file);
+      continue;
     }
-    found.neutral_file = file;
+    if (!files.neutral.empty()) {
+      throw InputError({directory.string(), "template", "one neutral",
+                        files.neutral.filename().string() + " and " + file.filename().string(), "remove one"});
+    }
+    files.neutral = file;
   }
-  if (found.neutral_file.empty()) {
-    throw InputError({directory.string(), "template", "neutral.obj or generic_neutral.obj", "neither", ""});
+  if (files.neutral.empty()) {
+    throw InputError({directory.string(), "template", "neutral.obj, generic_neutral.obj or generic_neutral_mesh.obj",
+                      "none of them", ""});
   }
-  if (shape_files.empty()) {
+  if (files.shapes.empty()) {
     throw InputError({directory.string(), "template", "an OBJ file for each shape beside the neutral", "none", ""});
   }
+  return files;
+}
+
+double medianLength(const Eigen::MatrixX3d& vectors) {
+  std::vector<double> lengths(static_cast<std::size_t>(vectors.rows()));
+  for (std::size_t v = 0; v < lengths.size(); ++v) lengths[v] = vectors.row(static_cast<Eigen::Index>(v)).norm();
+  const auto middle = lengths.begin() + std::ssize(lengths) / 2;
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  return *middle;
+}
+
+/// Are these displacements? Half of a face or more hardly moves, so they are short, where positions are as far from the
+/// origin as the neutral's.
+bool isDisplacement(const Eigen::MatrixX3d& shape, const Eigen::MatrixX3d& neutral) {
+  const double size = medianLength(neutral);
+  return medianLength(shape) < 0.1 * size && medianLength(shape - neutral) > 0.5 * size;
+}
+
+void noteFiles(const fs::path& directory, const TemplateFiles& files, std::size_t displacements, Progress& progress) {
+  if (files.identities > 0) {
+    progress.note(fmt::format("{}: identityNNN.obj ({} of them) are no shapes", directory.string(), files.identities));
+  }
+  if (displacements > 0) {
+    progress.note(fmt::format("{}: {} of {} shapes hold displacements, not positions: added to the neutral",
+                              directory.string(), displacements, files.shapes.size()));
+  }
+}
+
+}  // namespace
+
+RigTemplate readTemplate(const fs::path& directory, Progress& progress) {
+  const TemplateFiles files = sortFiles(directory);
+  RigTemplate found;
+  found.neutral_file = files.neutral;
+  found.names = files.names;
   found.neutral = geometry::readObj(found.neutral_file);
-  found.shapes.resize(shape_files.size());
-  tbb::parallel_for(std::size_t{0}, shape_files.size(), [&](std::size_t m) {
-    const geometry::TriangleMesh shape = geometry::readObj(shape_files[m]);
-    geometry::requireSameTopology(found.neutral, found.neutral_file.string(), shape, shape_files[m].string());
+  found.shapes.resize(files.shapes.size());
+  std::atomic<std::size_t> displacements = 0;
+  tbb::parallel_for(std::size_t{0}, files.shapes.size(), [&](std::size_t m) {
+    const geometry::TriangleMesh shape = geometry::readObj(files.shapes[m]);
+    geometry::requireSameTopology(found.neutral, found.neutral_file.string(), shape, files.shapes[m].string());
     found.shapes[m] = shape.positions;
+    if (!isDisplacement(shape.positions, found.neutral.positions)) return;
+    found.shapes[m] += found.neutral.positions;
+    ++displacements;
   });
+  noteFiles(directory, files, displacements, progress);
   return found;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "facezip/geometry/mesh.hpp"
+#include "facezip/progress.hpp"
 
 namespace facezip::rig {
 
@@ -17,10 +18,13 @@ struct RigTemplate {
   std::vector<Eigen::MatrixX3d> shapes;  ///< M positions, as many rows as the neutral has vertices
 };
 
-/// Reads neutral.obj (or generic_neutral.obj) and every other OBJ file of a directory as a shape of that name.
+/// Reads neutral.obj (generic_neutral.obj, generic_neutral_mesh.obj) and every other OBJ file of a directory as a shape
+/// of that name, but for the neutrals of others (identity042.obj). Files that hold displacements of the neutral, not
+/// positions, are told by their size, and added to it.
+/// progress  notes which files are not taken, and which are displacements
 /// Throws InputError: no directory, no or two neutrals, no shape, a shape of another topology than the neutral, a name
-/// that a package cannot hold.
-RigTemplate readTemplate(const std::filesystem::path& directory);
+/// that a package cannot hold, or two files of one name.
+RigTemplate readTemplate(const std::filesystem::path& directory, Progress& progress);
 
 /// Checks that the template begins with the subject's mesh: its first vertices and triangles are those of `mesh`.
 /// Throws InputError naming the first difference.

@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "blend/names.hpp"
 #include "blend/number.hpp"
+#include "blend/shape_names.hpp"
 #include "facezip/error.hpp"
+#include "facezip/nearest_names.hpp"
 #include "io/read_file.hpp"
 #include "package/json_field.hpp"
 #include "package/package_json.hpp"
@@ -64,10 +67,9 @@ class Guess {
  private:
   Eigen::Index indexIn(const std::vector<std::string>& names, const std::string& name, const std::string& item,
                        const std::string& expected) const {
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found != names.end()) return found - names.begin();
+    if (const auto found = blend::findName(name, names)) return static_cast<Eigen::Index>(*found);
     throw InputError({file_, item, expected, package::quoted(name),
-                      fmt::format("the nearest is {}", blend::nearestNames(name, names, 1).front())});
+                      fmt::format("the nearest is {}", nearestNames(name, names, 1).front())});
   }
 
   std::string file_;
@@ -125,8 +127,11 @@ void readJson(const nlohmann::json& document, Guess& guess) {
   for (const auto& [expression, weights] : document.items()) {
     const Eigen::Index row = guess.expression(expression, expression);
     if (!weights.is_object()) guess.fail(expression, "an object of shapes and weights", weights.dump().substr(0, 60));
+    std::set<Eigen::Index> seen;
     for (const auto& [shape, weight] : weights.items()) {
       const std::string item = expression + "." + shape;
+      if (!seen.insert(guess.shape(shape, item)).second)
+        guess.fail(item, "each shape once", "another name of one before");
       if (!weight.is_number()) guess.fail(item, "a weight from 0 to 1", weight.dump().substr(0, 60));
       guess.set(row, guess.shape(shape, item), weight.get<double>(), item, weight.dump());
     }

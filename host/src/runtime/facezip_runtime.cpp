@@ -10,8 +10,10 @@
 #include <span>
 #include <string>
 
+#include "blend/shape_names.hpp"
 #include "facezip/blend.hpp"
 #include "facezip/version.hpp"
+#include "io/composed.hpp"
 
 struct facezip_package {
   facezip::PackageDescription description;  // no Package, whose files would stay open
@@ -133,9 +135,13 @@ const char* facezip_expression_name(const facezip_package* package, int32_t expr
 
 int32_t facezip_find_expression(const facezip_package* package, const char* name) {
   if (package == nullptr || name == nullptr) return -1;
-  const auto& names = package->description.expressions;
-  const auto found = std::find(names.begin(), names.end(), name);
-  return found == names.end() ? -1 : static_cast<int32_t>(found - names.begin());
+  int32_t index = -1;
+  guarded([&] {
+    if (const auto found = facezip::blend::findName(name, package->description.expressions)) {
+      index = static_cast<int32_t>(*found);
+    }
+  });
+  return index;
 }
 
 int32_t facezip_map_count(const facezip_package* package) {
@@ -145,7 +151,8 @@ int32_t facezip_map_count(const facezip_package* package) {
 int32_t facezip_find_map(const facezip_package* package, const char* name) {
   if (package == nullptr || name == nullptr) return -1;
   const auto& maps = package->description.maps;
-  const auto found = std::find_if(maps.begin(), maps.end(), [name](const auto& map) { return map.name == name; });
+  const auto found = std::find_if(
+      maps.begin(), maps.end(), [wanted = facezip::io::composed(name)](const auto& map) { return map.name == wanted; });
   return found == maps.end() ? -1 : static_cast<int32_t>(found - maps.begin());
 }
 

@@ -1,5 +1,7 @@
 // Gains of expressions and regions, and the preset that `facezip blend --gain` takes (docs/blend.md).
 
+import { composed } from './composed.js';
+
 const kLargest = 16;
 
 export function unitGains(description) {
@@ -31,7 +33,7 @@ export function fromPreset(description, text) {
   const gains = unitGains(description);
   const read = (factors, names, what, values) => {
     for (const [name, gain] of Object.entries(factors ?? {})) {
-      const index = names.indexOf(name);
+      const index = names.indexOf(composed(name));
       if (index < 0) throw new Error(`the package has no ${what} "${name}"`);
       if (!(gain >= 0 && gain <= kLargest)) throw new Error(`the gain of ${name} is not a number from 0 to ${kLargest}`);
       values[index] = gain;

@@ -98,10 +98,11 @@ class Viewer {
 
   buildClip() {
     onFile(byId('clip'), (text, name) => {
-      this.clip = { frames: readClip(text, this.names), time: 0, playing: true };
+      const { frames, notes } = readClip(text, this.names);
+      this.clip = { frames, time: 0, playing: true };
       byId('play').hidden = byId('rate-row').hidden = false;
       byId('play').textContent = 'Pause';
-      note(`${name}: ${this.clip.frames.length} frames`);
+      note([`${name}: ${frames.length} frames`, ...notes].join('; '));
     });
     byId('play').addEventListener('click', () => {
       this.clip.playing = !this.clip.playing;

@@ -1,11 +1,15 @@
 // A package, read: docs/package_format.md. `readFile` is of files.js.
+import { composed } from './composed.js';
 import { cut, readImage } from './images.js';
 
 /** package.json, after the checks that a page needs; `facezip view` has made all of them. */
 export async function readDescription(readFile) {
   const description = JSON.parse(new TextDecoder().decode(await readFile('package.json')));
   if (description.format !== 'facezip-package') throw new Error('package.json is not of a facezip package');
-  if (description.version !== 2) throw new Error(`package.json has version ${description.version}; this page reads 2`);
+  if (![2, 3].includes(description.version)) {
+    throw new Error(`package.json has version ${description.version}; this page reads 2 and 3`);
+  }
+  description.expressions = description.expressions.map(composed);
   return description;
 }
 

@@ -3,6 +3,7 @@ import * as THREE from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
 import { memory } from './blend.js';
+import { composeTargets } from './composed.js';
 
 export class HeadScene {
   constructor(canvas) {
@@ -29,6 +30,7 @@ export class HeadScene {
     const bytes = await readFile(file);
     const gltf = await new GLTFLoader().parseAsync(bytes.buffer, '');
     gltf.scene.traverse((node) => { if (node.isMesh) this.head = node; });
+    composeTargets(this.head);
     this.scene.add(this.head);
     const { geometry } = this.head;
     // Of the neutral: three.js adds up the reach of all morph targets.

@@ -5,6 +5,7 @@
 //   face.setWeights({ smile: 0.7 });               // whenever they change; blends on the GPU
 import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
 import { PackageTextures } from './blend.js';
+import { composeTargets } from './composed.js';
 import { fileReader } from './files.js';
 import { cellGains, fromPreset } from './gains.js';
 import { shadedMaterial } from './materials.js';
@@ -18,6 +19,7 @@ export async function loadFace(renderer, base = './') {
   const gltf = await new GLTFLoader().parseAsync((await readFile(description.mesh.file)).buffer, '');
   let object;
   gltf.scene.traverse((node) => { if (node.isMesh) object = node; });
+  composeTargets(object);
   object.material = shadedMaterial(textures, { detail: { value: true } });
   let gains = new Float32Array(description.expressions.length).fill(1);
   let weights = new Float32Array(description.expressions.length);

@@ -1,0 +1,108 @@
+"""Runs the commands that documents show, as they stand there, on the built-in capture.
+
+    examples_test.py REPOSITORY FACEZIP RUNTIME_LIBRARY C_PROGRAM WORK
+
+A document is a session in a folder of its own: its lines that start with four blanks and "facezip". What commands need is
+made by those above them. To save time, a wrapper makes the built-in capture small and lets searches start less often; it
+changes nothing that is printed. `view` is ended when it serves. Programs in C and Python run where README's session left a
+package; READMEs of exports where they were written, and Blender's where Blender is.
+"""
+
+import os
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import sys
+
+WRAPPER = """#!/bin/sh
+# Less work, and no other output.
+case $1 in
+  synth) exec "$FACEZIP" "$@" --resolution 128 --expressions 12 ;;
+  compress | rig) exec "$FACEZIP" "$@" --restarts 2 --cluster-restarts 2 ;;
+  view) exec "$FACEZIP" "$@" --port 0 ;;
+esac
+exec "$FACEZIP" "$@"
+"""
+
+
+def commands_of(text):
+    """Shell lines of a document, comments included: the shell knows them."""
+    return [line[4:] for line in text.splitlines() if re.match(r"    (facezip|blender) ", line)]
+
+
+def run(command, folder, environment):
+    if command.startswith("facezip view"):
+        run_until_served(command, folder, environment)
+        return
+    done = subprocess.run(["bash", "-c", command], cwd=folder, env=environment, capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(f"{folder.name}: {command}\n{done.stdout}{done.stderr}exit code {done.returncode}")
+
+
+def run_until_served(command, folder, environment):
+    with subprocess.Popen(["bash", "-c", "exec " + command], cwd=folder, env=environment, stdout=subprocess.PIPE,
+                          text=True) as server:
+        line = server.stdout.readline()
+        server.send_signal(signal.SIGINT)
+    if not line.startswith("Look at http://127.0.0.1:"):
+        sys.exit(f"{folder.name}: {command}\nserved nothing: {line}")
+
+
+def run_session(document, name, work, environment):
+    commands = commands_of(document.read_text())
+    if not commands:
+        return 0
+    folder = work / name
+    folder.mkdir()
+    for command in commands:
+        run(command, folder, environment)
+    return len(commands)
+
+
+def run_exports(package, repository, work, environment):
+    count = 0
+    for target in sorted(p.stem for p in (repository / "host" / "export").glob("*.md")):
+        folder = work / f"export_{target}"
+        run(f"facezip export {package} --target {target} --output {folder}", work, environment)
+        for command in commands_of((folder / "README.md").read_text()):
+            if command.startswith("blender") and shutil.which("blender") is None:
+                continue
+            run(command, folder, environment)
+            count += 1
+    return count
+
+
+def run_programs(package_folder, repository, runtime, c_program, environment):
+    subprocess.run([c_program], cwd=package_folder, env=environment, check=True)
+    text = (repository / "docs" / "runtime.md").read_text()
+    program = re.search(r"^```python\n(.*?)^```", text, re.DOTALL | re.MULTILINE).group(1)
+    # A sanitized library cannot be loaded by a Python that is not.
+    if "FACEZIP_SANITIZED" not in environment:
+        libraries = {**environment, "LD_LIBRARY_PATH": str(runtime.parent)}
+        subprocess.run([sys.executable, "-c", program], cwd=package_folder, env=libraries, check=True)
+
+
+def main():
+    repository, facezip, runtime, c_program, work = (pathlib.Path(argument) for argument in sys.argv[1:])
+    shutil.rmtree(work, ignore_errors=True)
+    (work / "bin").mkdir(parents=True)
+    wrapper = work / "bin" / "facezip"
+    wrapper.write_text(WRAPPER)
+    wrapper.chmod(0o755)
+    environment = {**os.environ, "FACEZIP": str(facezip), "PATH": f"{work / 'bin'}:{os.environ['PATH']}"}
+    counts = {}
+    for document in [repository / "README.md", *sorted((repository / "docs").glob("*.md"))]:
+        counts[document.name] = run_session(document, document.stem, work, environment)
+    for document in ("README.md", "rig.md", "command_line.md"):
+        if counts[document] == 0:
+            sys.exit(f"{document} shows no commands")
+    package = work / "README" / "face.facezip"
+    counts["exports"] = run_exports(package, repository, work, environment)
+    run_programs(package.parent, repository, runtime, c_program, environment)
+    print(", ".join(f"{name}: {count}" for name, count in counts.items() if count))
+
+
+if __name__ == "__main__":
+    main()

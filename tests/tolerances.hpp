@@ -10,6 +10,10 @@ namespace facezip::test {
 // relative to the larger sample (255 full scale). 8-bit differences are exact and are compared so.
 inline constexpr double kDifferenceRelative = 2e-7;
 
+// A texture at a place, relative to full scale: 16 products in float32 with weights that sum to at most 1.6 in magnitude,
+// whose own rounding, of polynomials in a fraction that is exact, is a few units of 2^-24.
+inline constexpr double kResampleRelative = 1e-6;
+
 // Gram matrices, relative to sqrt(G[n,n] G[m,m]): at most 256 float32 products of a tile one after the other, then 64
 // tiles one after the other, each addition half a unit of 2^-24. All errors of one sign would give 320 * 6e-8 = 2e-5;
 // they are not, and a running sum over the whole band, the fault to be caught, is off by 1e-3 and more.

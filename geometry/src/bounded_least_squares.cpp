@@ -33,9 +33,10 @@ Eigen::VectorXd solveFree(const Eigen::MatrixXd& hessian, const Eigen::VectorXd&
 }  // namespace
 
 Eigen::VectorXd solveBounded(const Eigen::MatrixXd& hessian_in, const Eigen::VectorXd& linear_in,
-                             const Eigen::VectorXd& start, double low, double high) {
+                             const Eigen::VectorXd& start, const Eigen::VectorXd& low, const Eigen::VectorXd& high) {
   const Eigen::Index count = start.size();
-  assert(hessian_in.rows() == count && hessian_in.cols() == count && linear_in.size() == count && low < high);
+  assert(hessian_in.rows() == count && hessian_in.cols() == count && linear_in.size() == count);
+  assert(low.size() == count && high.size() == count && (low.array() < high.array()).all());
   Eigen::VectorXd x = start.cwiseMax(low).cwiseMin(high);
   const double scale = count == 0 ? 0.0 : hessian_in.diagonal().maxCoeff();
   if (scale <= 0.0) return x;
@@ -45,7 +46,7 @@ Eigen::VectorXd solveBounded(const Eigen::MatrixXd& hessian_in, const Eigen::Vec
   const double tolerance = kGradientTolerance * std::max(scale, linear.cwiseAbs().maxCoeff());
 
   std::vector<bool> bound(static_cast<std::size_t>(count));
-  for (Eigen::Index i = 0; i < count; ++i) bound[static_cast<std::size_t>(i)] = x[i] <= low || x[i] >= high;
+  for (Eigen::Index i = 0; i < count; ++i) bound[static_cast<std::size_t>(i)] = x[i] <= low[i] || x[i] >= high[i];
   for (Eigen::Index step = 0; step < 20 * count + 100; ++step) {
     std::vector<int> free;
     for (Eigen::Index i = 0; i < count; ++i) {
@@ -57,7 +58,7 @@ Eigen::VectorXd solveBounded(const Eigen::MatrixXd& hessian_in, const Eigen::Vec
     int stopped = -1;
     for (std::size_t i = 0; i < free.size(); ++i) {
       const auto index = static_cast<Eigen::Index>(i);
-      const double room = (move[index] > 0.0 ? high : low) - x[free[i]];
+      const double room = (move[index] > 0.0 ? high : low)[free[i]] - x[free[i]];
       if (std::abs(move[index]) <= std::abs(room)) continue;
       const double share = room / move[index];
       if (share < reach || stopped < 0) reach = share, stopped = free[i];
@@ -65,7 +66,7 @@ Eigen::VectorXd solveBounded(const Eigen::MatrixXd& hessian_in, const Eigen::Vec
     for (std::size_t i = 0; i < free.size(); ++i) x[free[i]] += reach * move[static_cast<Eigen::Index>(i)];
     x = x.cwiseMax(low).cwiseMin(high);
     if (stopped >= 0) {
-      x[stopped] = x[stopped] - low < high - x[stopped] ? low : high;
+      x[stopped] = (x[stopped] - low[stopped] < high[stopped] - x[stopped] ? low : high)[stopped];
       bound[static_cast<std::size_t>(stopped)] = true;
       continue;
     }
@@ -75,13 +76,19 @@ Eigen::VectorXd solveBounded(const Eigen::MatrixXd& hessian_in, const Eigen::Vec
     Eigen::Index release = -1;
     for (Eigen::Index i = 0; i < count; ++i) {
       if (!bound[static_cast<std::size_t>(i)]) continue;
-      const double pull = x[i] <= low ? gradient[i] : -gradient[i];
+      const double pull = x[i] <= low[i] ? gradient[i] : -gradient[i];
       if (pull > most) most = pull, release = i;
     }
     if (release < 0) return x;
     bound[static_cast<std::size_t>(release)] = false;
   }
   throw SolverError("bounded least squares", static_cast<long>(count), std::nan(""));
+}
+
+Eigen::VectorXd solveBounded(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& linear,
+                             const Eigen::VectorXd& start, double low, double high) {
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(start.size());
+  return solveBounded(hessian, linear, start, Eigen::VectorXd(low * ones), Eigen::VectorXd(high * ones));
 }
 
 }  // namespace facezip::geometry

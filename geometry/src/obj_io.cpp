@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "facezip/error.hpp"
+#include "facezip/geometry/textured_obj.hpp"
 #include "facezip/input_file.hpp"
 
 namespace facezip::geometry {
@@ -53,6 +54,8 @@ bool endsLine(char c) { return c == '\n' || c == '\r'; }
 
 // Of a file: some 30 million vertices. Parsed, it takes several times as much memory.
 constexpr std::uintmax_t kMostBytes = std::uintmax_t{2} << 30;
+// Of a material library: far beyond what people write.
+constexpr std::uintmax_t kMostLibraryBytes = std::uintmax_t{16} << 20;
 // tinyobjloader counts the corners of a face in a byte.
 constexpr int kMostCorners = 255;
 
@@ -204,12 +207,13 @@ ObjLines scanLines(const std::filesystem::path& file, std::string_view text) {
   return lines;
 }
 
-tinyobj::ObjReader parse(const std::filesystem::path& file, const std::string& text) {
+tinyobj::ObjReader parse(const std::filesystem::path& file, const std::string& text,
+                         const std::string& materials = "") {
   tinyobj::ObjReaderConfig config;
   config.triangulate = false;  // it would cut each quad along its shorter diagonal, so differently in every expression
   config.vertex_color = false;
   tinyobj::ObjReader reader;
-  if (!reader.ParseFromString(text, "", config)) {
+  if (!reader.ParseFromString(text, materials, config)) {
     std::string reason = reader.Error();
     while (!reason.empty() && reason.back() == '\n') reason.pop_back();
     throw InputError({file.string(), "", "an OBJ mesh", reason, "export the mesh again"});
@@ -255,10 +259,12 @@ class FanBuilder {
 
   void add(const tinyobj::mesh_t& mesh) {
     std::size_t corner = 0;
-    for (const unsigned char corners : mesh.num_face_vertices) {
+    for (std::size_t face = 0; face < mesh.num_face_vertices.size(); ++face) {
+      const unsigned char corners = mesh.num_face_vertices[face];
       const int line = lines_.faces.at(face_++);
       for (std::size_t i = 1; i + 1 < corners; ++i) {
         for (const std::size_t j : {std::size_t{0}, i, i + 1}) addCorner(mesh.indices[corner + j], line);
+        materials_.push_back(mesh.material_ids[face]);
         polygons_.push_back(static_cast<int>(face_) - 1);
       }
       corner += corners;
@@ -274,6 +280,8 @@ class FanBuilder {
   }
 
   std::size_t faceCount() const { return face_; }
+  /// Of each triangle; -1: none.
+  const std::vector<int>& materials() const { return materials_; }
 
  private:
   void addCorner(const tinyobj::index_t& index, int line) {
@@ -288,8 +296,56 @@ class FanBuilder {
   std::size_t face_ = 0;
   std::vector<int> vertices_;
   std::vector<int> uvs_;
+  std::vector<int> materials_;
   std::vector<int> polygons_;
 };
+
+/// textures is left empty.
+TexturedMesh meshOf(const std::filesystem::path& file, const ObjLines& lines, const tinyobj::ObjReader& reader) {
+  TexturedMesh textured;
+  TriangleMesh& mesh = textured.mesh;
+  mesh.positions = coordinates<Eigen::MatrixX3d>(file, reader.GetAttrib().vertices, lines.vertices);
+  FanBuilder fans(file, lines);
+  for (const tinyobj::shape_t& shape : reader.GetShapes()) fans.add(shape.mesh);
+  if (fans.faceCount() != lines.faces.size()) {
+    throw InputError({file.string(), "", fmt::format("{} faces", lines.faces.size()),
+                      fmt::format("{}", fans.faceCount()), "export the mesh again"});
+  }
+  fans.store(mesh);
+  textured.materials = fans.materials();
+  // Texture coordinates that no face uses are as good as none: callers ask "has it UVs?" by their number.
+  if (lines.faces_have_uvs) mesh.uvs = coordinates<Eigen::MatrixX2d>(file, reader.GetAttrib().texcoords, lines.uvs);
+  return textured;
+}
+
+/// The file of that name in the folder of `file`: where a path leads elsewhere, its last part. Empty if there is none.
+std::filesystem::path besideFile(const std::filesystem::path& file, std::string name) {
+  namespace fs = std::filesystem;
+  std::replace(name.begin(), name.end(), '\\', '/');
+  std::error_code error;
+  for (const fs::path& candidate : {fs::path(name).lexically_normal(), fs::path(name).filename()}) {
+    if (candidate.empty() || candidate.is_absolute() || *candidate.begin() == "..") continue;
+    const fs::path beside = file.parent_path() / candidate;
+    if (fs::is_regular_file(beside, error)) return beside;
+  }
+  return {};
+}
+
+/// The text of every material library that the mesh names, one after the other.
+std::string readLibraries(const std::filesystem::path& file, std::string_view text) {
+  std::string libraries;
+  while (!text.empty()) {
+    std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(text.size(), line.size() + 1));
+    if (nextWord(line) != "mtllib") continue;
+    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+    while (!line.empty() && isBlank(line.back())) line.remove_suffix(1);
+    const std::filesystem::path library = besideFile(file, std::string(line));
+    if (!library.empty())
+      libraries += plainLines(InputFile(library, "a material library").read(kMostLibraryBytes)) + "\n";
+  }
+  return libraries;
+}
 
 std::string formatObj(const TriangleMesh& mesh) {
   fmt::memory_buffer text;
@@ -312,20 +368,21 @@ std::string formatObj(const TriangleMesh& mesh) {
 TriangleMesh readObj(const std::filesystem::path& file) {
   const std::string text = plainLines(InputFile(file, "an OBJ file", "check the path").read(kMostBytes));
   const ObjLines lines = scanLines(file, text);
-  const tinyobj::ObjReader reader = parse(file, text);
+  return meshOf(file, lines, parse(file, text)).mesh;
+}
 
-  TriangleMesh mesh;
-  mesh.positions = coordinates<Eigen::MatrixX3d>(file, reader.GetAttrib().vertices, lines.vertices);
-  FanBuilder fans(file, lines);
-  for (const tinyobj::shape_t& shape : reader.GetShapes()) fans.add(shape.mesh);
-  if (fans.faceCount() != lines.faces.size()) {
-    throw InputError({file.string(), "", fmt::format("{} faces", lines.faces.size()),
-                      fmt::format("{}", fans.faceCount()), "export the mesh again"});
+TexturedMesh readTexturedObj(const std::filesystem::path& file) {
+  const std::string text = plainLines(InputFile(file, "an OBJ file", "check the path").read(kMostBytes));
+  const ObjLines lines = scanLines(file, text);
+  const tinyobj::ObjReader reader = parse(file, text, readLibraries(file, text));
+  TexturedMesh textured = meshOf(file, lines, reader);
+  for (const tinyobj::material_t& material : reader.GetMaterials()) {
+    textured.textures.push_back(besideFile(file, material.diffuse_texname));
   }
-  fans.store(mesh);
-  // Texture coordinates that no face uses are as good as none: callers ask "has it UVs?" by their number.
-  if (lines.faces_have_uvs) mesh.uvs = coordinates<Eigen::MatrixX2d>(file, reader.GetAttrib().texcoords, lines.uvs);
-  return mesh;
+  const auto none = static_cast<int>(textured.textures.size());
+  for (int& material : textured.materials) material = material < 0 || material >= none ? none : material;
+  textured.textures.emplace_back();
+  return textured;
 }
 
 std::vector<std::filesystem::path> objFiles(const std::filesystem::path& folder) {

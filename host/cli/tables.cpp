@@ -235,6 +235,20 @@ void printRigReport(const RigReport& report) {
   printSeconds(report.seconds);
 }
 
+void printRegistrationReport(const RegistrationReport& report) {
+  say("{} vertices, {} triangles of the region, in {}{}\n", report.vertices, report.region_triangles, report.unit,
+      report.unit_guessed ? " (guessed)" : "");
+  say("\n{:<34}{:>20}{:>20}{:>10}{:>20}\n", "scan to mesh, mm", "posed", "registered", "shown", "head moved");
+  say("{:<34}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "", "mean", "99th pct", "mean", "99th pct", "%", "degrees",
+      "mm");
+  for (const RegisteredScan& scan : report.scans) {
+    say("{:<34}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.1f}{:>10.2f}{:>10.2f}\n", scan.name, scan.model_mean,
+        scan.model_p99, scan.mean, scan.p99, 100.0 * scan.coverage, scan.degrees, scan.millimetres);
+  }
+  say("\n");
+  printSeconds(report.seconds);
+}
+
 void printSolvedClip(const SolvedClip& clip) {
   RigResidual worst;
   double mean = 0.0;

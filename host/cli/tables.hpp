@@ -3,6 +3,7 @@
 
 #include "facezip/compress.hpp"
 #include "facezip/evaluate.hpp"
+#include "facezip/registration.hpp"
 #include "facezip/rig.hpp"
 
 namespace facezip::cli {
@@ -11,6 +12,8 @@ void printCompressReport(const CompressReport& report);
 /// RMSE by expression and method of every map, texel errors, angles of normals, blends and the ablation where there is
 /// one; then memory, then times.
 void printEvaluation(const Evaluation& evaluation);
+/// Residuals, coverage and head motion of each scan, times.
+void printRegistrationReport(const RegistrationReport& report);
 /// Residuals of each expression beside the template's, convergence, textures, times.
 void printRigReport(const RigReport& report);
 /// Residuals over the frames, and frames a second.

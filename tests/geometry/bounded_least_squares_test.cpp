@@ -73,5 +73,24 @@ TEST(BoundedLeastSquares, DependentUnknownsDoNoHarm) {
   EXPECT_NEAR(x.sum(), 0.7, 1e-6);
 }
 
+TEST(BoundedLeastSquares, EveryUnknownHasItsOwnBounds) {
+  const Problem problem = randomProblem(6, 12, 3);
+  Eigen::VectorXd low(6), high(6);
+  low << -0.1, 0.0, -5.0, 0.2, -1.0, -0.01;
+  high << 0.1, 0.01, 5.0, 0.3, 1.0, 0.01;
+  const Eigen::VectorXd x = solveBounded(problem.hessian, problem.linear, Eigen::VectorXd::Zero(6), low, high);
+  const Eigen::VectorXd gradient = problem.hessian * x - problem.linear;
+  int at_a_bound = 0;
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_GE(x[i], low[i]);
+    EXPECT_LE(x[i], high[i]);
+    const bool at_low = x[i] == low[i], at_high = x[i] == high[i];
+    at_a_bound += at_low || at_high ? 1 : 0;
+    EXPECT_GT(gradient[i], at_high ? -1e9 : -1e-6);
+    EXPECT_LT(gradient[i], at_low ? 1e9 : 1e-6);
+  }
+  EXPECT_GT(at_a_bound, 0);
+}
+
 }  // namespace
 }  // namespace facezip::geometry

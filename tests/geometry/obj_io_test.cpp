@@ -9,6 +9,7 @@
 #include "../file_contents.hpp"
 #include "../temporary_directory.hpp"
 #include "facezip/error.hpp"
+#include "facezip/geometry/textured_obj.hpp"
 #include "test_meshes.hpp"
 
 namespace facezip::geometry {
@@ -196,6 +197,27 @@ TEST_F(ObjFile, FacesWithAndWithoutUvsAreRefused) {
   EXPECT_THAT(refusal(kSquare + kSquareUvs + "f 1/1 2/2 3/3\nf 1 2 3\n"), HasSubstr("line 10"));
   EXPECT_THAT(refusal(kSquare + kSquareUvs + "f 1 2 3\nf 1/1 2/2 3/3\n"), HasSubstr("line 10"));
   EXPECT_THAT(refusal(kSquare + kSquareUvs + "f 1/1 2 3/3\n"), HasSubstr("line 9"));
+}
+
+TEST_F(ObjFile, TexturesAreThoseOfTheMaterialsBesideTheMesh) {
+  std::ofstream(directory_ / "a.mtl") << "newmtl skin\nmap_Kd -s 1 1 1 C:\\scans\\face one.png\n"
+                                         "newmtl far\nmap_Kd ../away.png\nnewmtl plain\nKd 1 1 1\n";
+  std::ofstream(directory_ / "face one.png") << "x";
+  std::ofstream(directory_ / "away.png") << "x";
+  std::ofstream(path_) << "mtllib a.mtl\n" + kSquare + kSquareUvs +
+                              "f 1/1 2/2 3/3\nusemtl far\nf 1/1 3/3 4/4\nusemtl skin\nf 1/1 2/2 3/3 4/4\n"
+                              "usemtl plain\nf 1/1 2/2 4/4\nusemtl nowhere\nf 2/2 3/3 4/4\n";
+  const TexturedMesh mesh = readTexturedObj(path_);
+  ASSERT_EQ(mesh.materials.size(), 6u);
+  const auto texture = [&](std::size_t t) { return mesh.textures[static_cast<std::size_t>(mesh.materials[t])]; };
+  EXPECT_EQ(texture(0), "");
+  EXPECT_EQ(texture(1), directory_ / "away.png") << "a path that leaves the folder stands for its name";
+  EXPECT_EQ(texture(2), directory_ / "face one.png");
+  EXPECT_EQ(texture(3), directory_ / "face one.png");
+  EXPECT_EQ(texture(4), "");
+  EXPECT_EQ(texture(5), "");
+  std::filesystem::remove(directory_ / "a.mtl");
+  for (const std::filesystem::path& none : readTexturedObj(path_).textures) EXPECT_EQ(none, "");
 }
 
 TEST_F(ObjFile, TruncatedFilesAreReadOrRefusedButNeverCrash) {

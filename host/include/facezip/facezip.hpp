@@ -20,6 +20,7 @@
 #include "facezip/progress.hpp"
 #include "facezip/protected_paths.hpp"
 #include "facezip/reconstruct.hpp"
+#include "facezip/registration.hpp"
 #include "facezip/report.hpp"
 #include "facezip/rig.hpp"
 #include "facezip/sample_type.hpp"

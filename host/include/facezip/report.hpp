@@ -6,6 +6,7 @@
 
 #include "facezip/compress.hpp"
 #include "facezip/evaluate.hpp"
+#include "facezip/registration.hpp"
 #include "facezip/rig.hpp"
 
 namespace facezip {
@@ -13,6 +14,7 @@ namespace facezip {
 /// JSON text of a report, ending in a line end.
 std::string toJson(const CompressReport& report);
 std::string toJson(const Evaluation& evaluation);
+std::string toJson(const RegistrationReport& report);
 std::string toJson(const RigReport& report);
 std::string toJson(const SolvedClip& clip);
 

@@ -166,6 +166,31 @@ std::string toJson(const Evaluation& evaluation) {
   return object.dump(2) + "\n";
 }
 
+std::string toJson(const RegistrationReport& report) {
+  json object = {{"facezip_report", "register"},
+                 {"version", kReportVersion},
+                 {"unit", report.unit},
+                 {"unit_guessed", report.unit_guessed},
+                 {"template_scale", report.template_scale},
+                 {"vertices", report.vertices},
+                 {"region_triangles", report.region_triangles},
+                 {"scans", json::array()},
+                 {"seconds", secondsJson(report.seconds)}};
+  for (const RegisteredScan& scan : report.scans) {
+    object["scans"].push_back({{"name", scan.name},
+                               {"triangles", scan.triangles},
+                               {"spikes", scan.spikes},
+                               {"roughness_mm", scan.roughness},
+                               {"landmarks", {{"used", scan.landmarks}, {"rms_mm", scan.landmark_rms}}},
+                               {"model_mm", {{"mean", scan.model_mean}, {"p99", scan.model_p99}}},
+                               {"residual_mm", {{"mean", scan.mean}, {"p99", scan.p99}}},
+                               {"matched", scan.matched},
+                               {"coverage", scan.coverage},
+                               {"head_motion", {{"degrees", scan.degrees}, {"mm", scan.millimetres}}}});
+  }
+  return object.dump(2) + "\n";
+}
+
 std::string toJson(const RigReport& report) {
   json object = json::parse(rig::rigJson(report, 1.0));
   for (const char* of_the_file : {"format", "generator", "millimetres_per_unit"}) object.erase(of_the_file);

@@ -11,8 +11,10 @@ namespace facezip::geometry {
 /// hessian  M by M, symmetric, positive semidefinite
 /// linear   M
 /// start    M; what is closest to it is preferred where H does not decide; clamped to the bounds first
-/// low      lower bound of every unknown, below high
+/// low      lower bounds, M or one for all, below high
 /// Throws SolverError if the optimality conditions are not reached in 20 M + 100 steps.
+Eigen::VectorXd solveBounded(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& linear,
+                             const Eigen::VectorXd& start, const Eigen::VectorXd& low, const Eigen::VectorXd& high);
 Eigen::VectorXd solveBounded(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& linear,
                              const Eigen::VectorXd& start, double low, double high);
 

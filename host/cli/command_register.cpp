@@ -1,0 +1,69 @@
+#include <memory>
+
+#include "cancel_on_signal.hpp"
+#include "commands.hpp"
+#include "facezip/registration.hpp"
+#include "facezip/report.hpp"
+#include "option_types.hpp"
+#include "shared_options.hpp"
+#include "tables.hpp"
+#include "terminal.hpp"
+
+namespace facezip::cli {
+
+void addRegisterCommand(CLI::App& app, const CommonOptions& common) {
+  struct Arguments {
+    std::string scans;
+    std::string registration_template;
+    std::string output;
+    std::string landmarks;
+    std::string device = "auto";
+    std::string report;
+    RegistrationOptions options;
+  };
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command =
+      app.add_subcommand("register", "Makes a capture of raw scans: a template bent onto each, textures in its layout");
+  command
+      ->add_option("scans", arguments->scans,
+                   "Directory of scans: neutral.obj, an OBJ file for each expression, textures, landmarks.json")
+      ->required()
+      ->type_name("SCANS");
+  command
+      ->add_option("--template", arguments->registration_template,
+                   "Directory of neutral.obj with UVs and landmarks.json; shapes and identity/ where there are any")
+      ->required()
+      ->type_name("DIR");
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "Directory of the capture; an earlier one that this command made is replaced")
+      ->required()
+      ->type_name("CAPTURE");
+  command->add_option("--resolution", arguments->options.resolution, "Side of the capture's textures in texels")
+      ->transform(wholeNumber())
+      ->capture_default_str();
+  command->add_option("--landmarks", arguments->landmarks, "Landmarks of the scans (default: SCANS/landmarks.json)")
+      ->type_name("FILE");
+  command
+      ->add_option("--unit", arguments->options.unit,
+                   "Unit of the scans (default: guessed from the size of the neutral)")
+      ->type_name("UNIT");
+  addDeviceOption(*command, arguments->device);
+  command->add_option("--report", arguments->report, "Also write what was found as JSON (docs/reports.md)")
+      ->type_name("FILE");
+  command->callback([arguments, &common] {
+    TerminalProgress progress(common.quiet);
+    arguments->options.landmarks = arguments->landmarks;
+    requireReportPlace(arguments->report,
+                       inputsOf(arguments->scans, arguments->registration_template, arguments->options)
+                           .add(arguments->output, "the capture that is written"));
+    const CancelOnSignal cancel(progress);
+    const Device device = openDevice(arguments->device, &progress);
+    const RegistrationReport report = registerScans(arguments->scans, arguments->registration_template,
+                                                    arguments->output, arguments->options, device, progress);
+    if (!arguments->report.empty()) writeReport(arguments->report, toJson(report), &progress);
+    printRegistrationReport(report);
+  });
+}
+
+}  // namespace facezip::cli

@@ -1,0 +1,63 @@
+// registration.hpp - raw scans and a template in, a capture out: every expression in one topology and one layout.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "facezip/device.hpp"
+#include "facezip/progress.hpp"
+#include "facezip/protected_paths.hpp"
+
+namespace facezip {
+
+struct RegistrationOptions {
+  int resolution = 2048;            ///< side of the capture's textures, 64 to 16384
+  std::string unit;                 ///< of the scans; empty: guessed from the neutral's size
+  std::filesystem::path landmarks;  ///< empty: SCANS/landmarks.json
+};
+
+/// What was found of a scan. Lengths in millimetres.
+struct RegisteredScan {
+  std::string name;
+  int triangles = 0;          ///< of the scan, cleaned
+  int spikes = 0;             ///< vertices that stood out of it and were put back
+  double roughness = 0.0;     ///< of its surface: the noise that no mesh follows
+  int landmarks = 0;          ///< that were used
+  double landmark_rms = 0.0;  ///< from the registered mesh
+  /// Distances of the scan's points from the mesh: as the model poses it, then as registered.
+  double model_mean = 0.0, model_p99 = 0.0;
+  double mean = 0.0, p99 = 0.0;
+  double matched = 0.0;      ///< share of the scan's surface within reach of the mesh
+  double coverage = 0.0;     ///< share of the region's texels that the scan shows
+  double degrees = 0.0;      ///< how far the head had turned against the neutral's scan, and
+  double millimetres = 0.0;  ///< how far that and its shift moved it, on average
+};
+
+struct RegistrationReport {
+  std::vector<RegisteredScan> scans;  ///< the neutral, then the N expressions
+  std::string unit;                   ///< of the capture: the scans'
+  bool unit_guessed = false;
+  double template_scale = 1.0;  ///< size of the subject's head beside the template's, without identity modes
+  int vertices = 0;
+  int region_triangles = 0;
+  std::vector<std::pair<std::string, double>> seconds;
+};
+
+/// What registerScans() reads: what is written may be none of it.
+ProtectedPaths inputsOf(const std::filesystem::path& scans, const std::filesystem::path& template_directory,
+                        const RegistrationOptions& options);
+
+/// Registers the scans of a directory to a template and writes them as a capture (docs/registration.md):
+/// neutral.obj, expressions/NAME.obj, albedo/NAME.png, confidence/NAME.png, face_region.txt, capture.json. The capture
+/// appears whole or not at all; an earlier one that this made is replaced.
+/// scans               NAME.obj with a texture each, "neutral" among them, and landmarks.json
+/// template_directory  neutral.obj with UVs, landmarks.json; shapes (NAME.obj) and identity modes where it has any
+/// Throws InputError (a file, an option, scans that do not fit the template), DeviceError, OutputError, SolverError,
+/// Cancelled.
+RegistrationReport registerScans(const std::filesystem::path& scans, const std::filesystem::path& template_directory,
+                                 const std::filesystem::path& capture, const RegistrationOptions& options,
+                                 const Device& device, Progress& progress);
+
+}  // namespace facezip

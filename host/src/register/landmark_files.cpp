@@ -1,0 +1,42 @@
+#include "register/landmark_files.hpp"
+
+#include "io/read_file.hpp"
+#include "package/json_field.hpp"
+
+namespace facezip::registration {
+namespace {
+using package::JsonField;
+
+constexpr const char* kCure = "see docs/registration.md";
+constexpr double kFarthest = 1e9;  // of a coordinate, in any unit
+
+}  // namespace
+
+ScanLandmarks readScanLandmarks(const std::filesystem::path& file) {
+  const nlohmann::json json =
+      package::parseJson(io::readFile(file, "landmarks of the scans", kCure), file.string(), kCure);
+  const JsonField root(json, file.string(), "", kCure);
+  ScanLandmarks landmarks;
+  for (const auto& [scan, points] : root.object().items()) {
+    const JsonField of_scan = root[scan];
+    for (const auto& [name, point] : of_scan.object().items()) {
+      Eigen::RowVector3d& place = landmarks[scan][name];
+      Eigen::Index axis = 0;
+      for (const JsonField& coordinate : of_scan[name].elements(3, 3)) {
+        place[axis++] = coordinate.number(-kFarthest, kFarthest);
+      }
+    }
+  }
+  return landmarks;
+}
+
+TemplateLandmarks readTemplateLandmarks(const std::filesystem::path& file, int vertices) {
+  const nlohmann::json json =
+      package::parseJson(io::readFile(file, "landmarks of the template", kCure), file.string(), kCure);
+  const JsonField root(json, file.string(), "", kCure);
+  TemplateLandmarks landmarks;
+  for (const auto& [name, vertex] : root.object().items()) landmarks[name] = root[name].integer(0, vertices - 1);
+  return landmarks;
+}
+
+}  // namespace facezip::registration

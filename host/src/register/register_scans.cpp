@@ -1,0 +1,290 @@
+// register_scans.cpp - from raw scans to a capture, scan by scan: meshes, then textures in the template's layout.
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "compress/stage_clock.hpp"
+#include "facezip/error.hpp"
+#include "facezip/geometry/face_region.hpp"
+#include "facezip/geometry/length.hpp"
+#include "facezip/geometry/obj_io.hpp"
+#include "facezip/registration.hpp"
+#include "image/set_sample.hpp"
+#include "io/counts.hpp"
+#include "io/staged_directory.hpp"
+#include "register/hole_filling.hpp"
+#include "register/mesh_registration.hpp"
+#include "register/texture_baking.hpp"
+
+namespace facezip {
+namespace {
+using namespace registration;
+namespace fs = std::filesystem;
+
+constexpr const char* kManifest = "capture.json";
+constexpr const char* kMap = "albedo";
+constexpr const char* kConfidence = "confidence";
+constexpr double kLittleShown = 0.9;  // of what the neutral's scan shows
+
+/// What all scans of a registration share.
+struct Job {
+  ScanFolder folder;
+  RegistrationTemplate source;
+  double millimetres_per_unit = 1.0;  ///< of the scans, and of the capture
+  double template_unit = 1.0;         ///< millimetres
+  const RegistrationOptions& options;
+  device::DeviceContext& context;
+  Progress& progress;
+  fs::path directory;  ///< where the capture is written
+};
+
+void requireSaneOptions(const RegistrationOptions& options) {
+  if (options.resolution >= 64 && options.resolution <= 16384) return;
+  throw InputError({"--resolution", "", "64 to 16384", std::to_string(options.resolution), ""});
+}
+
+/// Unit of the scans; notes a guess.
+geometry::LengthUnit unitOf(const RegistrationOptions& options, const fs::path& neutral, Progress& progress) {
+  if (!options.unit.empty()) return geometry::parseUnit(options.unit);
+  try {
+    const geometry::UnitGuess guess = geometry::guessUnit(geometry::readObj(neutral));
+    progress.note(guess.explanation);
+    return guess.unit;
+  } catch (const InputError& error) {
+    throw error.in(neutral.string());
+  }
+}
+
+void writeMesh(const Job& job, const fs::path& file, const Eigen::MatrixX3d& positions) {
+  geometry::TriangleMesh mesh = job.source.neutral;
+  mesh.positions = positions / job.millimetres_per_unit;
+  geometry::writeObj(file, mesh);
+}
+
+void writeTexture(const fs::path& folder, const std::string& name, const BakedTexture& texture) {
+  io::createDirectories(folder);
+  const bool is_float = texture.type == image::SampleType::kFloat32;
+  image::Image out{{texture.side, texture.side, texture.channels, texture.type}, {}};
+  out.samples.resize(toSize(texture.side) * out.shape.rowBytes());
+  for (std::size_t i = 0; i < texture.samples.size(); ++i) image::setSample(out, i, texture.samples[i]);
+  image::writeImage(folder / (name + (is_float ? ".exr" : ".png")), out);
+}
+
+void writeConfidence(const fs::path& folder, const std::string& name, const BakedTexture& texture) {
+  io::createDirectories(folder);
+  image::Image out{{texture.side, texture.side, 1, image::SampleType::kUint8}, {}};
+  const auto bytes = std::as_bytes(std::span(texture.confidence));
+  out.samples.assign(bytes.begin(), bytes.end());
+  image::writeImage(folder / (name + ".png"), out);
+}
+
+/// The neutral's texture is whole once its holes are filled from around them; an expression's follow the neutral's.
+void fillTexture(BakedTexture& texture, const BakedTexture* neutral) {
+  if (neutral != nullptr) {
+    for (std::size_t i = 0; i < texture.samples.size(); ++i) texture.samples[i] -= neutral->samples[i];
+  }
+  fillHoles(texture.samples, texture.channels, texture.side, texture.side, texture.confidence);
+  if (neutral != nullptr) {
+    for (std::size_t i = 0; i < texture.samples.size(); ++i) texture.samples[i] += neutral->samples[i];
+  }
+}
+
+void requireSameChannels(const BakedTexture& texture, const BakedTexture& neutral, const fs::path& file) {
+  if (texture.channels == neutral.channels && texture.type == neutral.type) return;
+  throw InputError(
+      {file.string(), "texture",
+       fmt::format("{} channels of {} as the neutral's", neutral.channels, image::sampleTypeName(neutral.type)),
+       fmt::format("{} of {}", texture.channels, image::sampleTypeName(texture.type)), ""});
+}
+
+/// Triangles whose textures the capture is about.
+std::vector<int> regionOf(const Job& job, const RegisteredSubject& subject) {
+  if (!job.source.region.empty()) return job.source.region;
+  std::vector<int> region;
+  for (std::size_t t = 0; t < subject.surface.seen.size(); ++t) {
+    if (subject.surface.seen[t]) region.push_back(static_cast<int>(t));
+  }
+  return region;
+}
+
+/// Which texels of the layout lie in the region.
+std::vector<bool> texelsOf(const Job& job, const std::vector<int>& region) {
+  const int side = job.options.resolution;
+  const raster::UvRaster raster(job.source.neutral, region, side, side, 0);
+  std::vector<bool> texels;
+  for (const raster::TexelSample& sample : raster.coveredRows(0, side)) {
+    texels.push_back(sample.kind == raster::TexelSample::Kind::kCovered);
+  }
+  return texels;
+}
+
+double coverageOf(const BakedTexture& texture, const std::vector<bool>& region) {
+  std::size_t shown = 0, wanted = 0;
+  for (std::size_t i = 0; i < region.size(); ++i) {
+    if (!region[i]) continue;
+    ++wanted;
+    shown += texture.confidence[i] > 0 ? 1 : 0;
+  }
+  return wanted == 0 ? 0.0 : static_cast<double>(shown) / static_cast<double>(wanted);
+}
+
+RegisteredScan reportOf(const PlacedScan& placed, const geometry::ScanResidual& model,
+                        const geometry::ScanResidual& residual, const Eigen::MatrixX3d& mesh, double coverage) {
+  RegisteredScan report;
+  report.name = placed.scan.name;
+  report.triangles = static_cast<int>(placed.scan.mesh.triangles.rows());
+  report.spikes = placed.surface.judged().spikes;
+  report.roughness = placed.surface.judged().roughness;
+  report.landmarks = static_cast<int>(placed.landmarks.size());
+  report.landmark_rms = landmarkRms(placed.landmarks, mesh);
+  report.model_mean = model.mean;
+  report.model_p99 = model.percentile_99;
+  report.mean = residual.mean;
+  report.p99 = residual.percentile_99;
+  report.matched = residual.matched;
+  report.coverage = coverage;
+  return report;
+}
+
+/// The neutral, its texture without holes, and what they are judged by.
+struct Neutral {
+  RegisteredSubject subject;
+  BakedTexture texture;
+  std::vector<int> region;
+  std::vector<bool> texels;
+};
+
+PlacedScan place(const Job& job, const fs::path& file, const geometry::TriangleMesh& mesh) {
+  return placeScan(file, job.millimetres_per_unit, job.folder.landmarks, job.folder.landmark_file, job.source.landmarks,
+                   mesh, job.progress);
+}
+
+/// All of the mesh gets texels, and a gutter; what the scan does not show is filled.
+raster::UvRaster layoutOf(const Job& job) {
+  const int side = job.options.resolution;
+  return {job.source.neutral, geometry::wholeMeshRegion(job.source.neutral), side, side, std::max(4, side / 128)};
+}
+
+Neutral registerNeutralScan(Job& job, RegistrationReport& report) {
+  const PlacedScan placed = place(job, job.folder.neutral, job.source.neutral);
+  job.template_unit = unitOfTemplate(job.source, placed);
+  RegisteredSubject subject = registerNeutral(job.source, job.template_unit, placed, job.progress);
+  const Eigen::MatrixX3d mesh = subject.motion.apply(subject.neutral);
+  BakedTexture texture =
+      bakeTexture(layoutOf(job), job.source.neutral, mesh, placed.scan, placed.surface, job.context, job.progress);
+  std::vector<int> region = regionOf(job, subject);
+  std::vector<bool> texels = texelsOf(job, region);
+  report.scans.push_back(reportOf(placed, subject.model_residual, subject.residual, mesh, coverageOf(texture, texels)));
+  report.template_scale = subject.scale;
+  writeConfidence(job.directory / kConfidence, "neutral", texture);
+  fillTexture(texture, nullptr);
+  writeMesh(job, job.directory / "neutral.obj", subject.neutral);
+  writeTexture(job.directory / kMap, "neutral", texture);
+  return {std::move(subject), std::move(texture), std::move(region), std::move(texels)};
+}
+
+RegisteredScan registerExpressionScan(const Job& job, const Neutral& neutral, const fs::path& file) {
+  geometry::TriangleMesh mesh = job.source.neutral;
+  mesh.positions = neutral.subject.neutral;
+  const PlacedScan placed = place(job, file, mesh);
+  const RegisteredExpression expression = registerExpression(neutral.subject, placed, job.progress);
+  const geometry::Similarity motion = headMotionOf(neutral.subject, expression);
+  BakedTexture texture = bakeTexture(layoutOf(job), job.source.neutral, expression.mesh, placed.scan, placed.surface,
+                                     job.context, job.progress);
+  requireSameChannels(texture, neutral.texture, file);
+  RegisteredScan report = reportOf(placed, expression.model_residual, expression.residual, expression.mesh,
+                                   coverageOf(texture, neutral.texels));
+  // Against the neutral's scan, which has a motion of its own from the template's place.
+  const Eigen::Matrix3d turn = motion.turn * neutral.subject.motion.turn.transpose();
+  report.degrees = Eigen::AngleAxisd(turn).angle() * 180.0 / std::numbers::pi;
+  report.millimetres = (motion.apply(neutral.subject.neutral) - neutral.subject.motion.apply(neutral.subject.neutral))
+                           .rowwise()
+                           .norm()
+                           .mean();
+  writeConfidence(job.directory / kConfidence, report.name, texture);
+  fillTexture(texture, &neutral.texture);
+  writeMesh(job, job.directory / "expressions" / (report.name + ".obj"),
+            (expression.mesh.rowwise() - motion.shift) * motion.turn);
+  writeTexture(job.directory / kMap, report.name, texture);
+  return report;
+}
+
+void writeRegion(const fs::path& file, const std::vector<int>& region) {
+  fmt::memory_buffer text;
+  fmt::format_to(std::back_inserter(text), "# triangles whose textures change, from 0\n");
+  for (const int triangle : region) fmt::format_to(std::back_inserter(text), "{}\n", triangle);
+  io::writeTextFile(file, fmt::to_string(text));
+}
+
+void writeManifest(const Job& job, const RegistrationReport& report, const std::string& name) {
+  nlohmann::ordered_json manifest;
+  manifest["name"] = name;
+  manifest["unit"] = report.unit;
+  manifest["maps"][kMap] = nlohmann::ordered_json::object();  // what else holds images is no map
+  for (std::size_t n = 1; n < report.scans.size(); ++n) manifest["expressions"].push_back(report.scans[n].name);
+  manifest["generator"] = "facezip register";
+  io::writeTextFile(job.directory / kManifest, manifest.dump(2) + "\n");
+}
+
+std::vector<fs::path> everyFile(const fs::path&) {
+  return {kManifest, "neutral.obj", "expressions", "face_region.txt", kMap, kConfidence};
+}
+
+}  // namespace
+
+ProtectedPaths inputsOf(const fs::path& scans, const fs::path& template_directory, const RegistrationOptions& options) {
+  ProtectedPaths paths;
+  paths.add(scans, "the scans").add(template_directory, "the template");
+  return paths.add(options.landmarks, "the landmarks");
+}
+
+RegistrationReport registerScans(const fs::path& scans, const fs::path& template_directory, const fs::path& capture,
+                                 const RegistrationOptions& options, const Device& device, Progress& progress) {
+  requireSaneOptions(options);
+  compress::StageClock clock;
+  inputsOf(scans, template_directory, options).requireApartFromFolder(capture);
+  io::StagedDirectory staged(capture, {kManifest, "\"generator\": \"facezip register\"", everyFile}, &progress);
+  progress.stage("reading the template", 0);
+  Job job{openScans(scans, options.landmarks),
+          readRegistrationTemplate(template_directory),
+          1.0,
+          1.0,
+          options,
+          device.context(),
+          progress,
+          staged.path()};
+  const geometry::LengthUnit unit = unitOf(options, job.folder.neutral, progress);
+  job.millimetres_per_unit = 1000.0 * geometry::metresPerUnit(unit);
+  RegistrationReport report;
+  report.unit = geometry::unitSymbol(unit);
+  report.unit_guessed = options.unit.empty();
+  report.vertices = static_cast<int>(job.source.neutral.positions.rows());
+  clock.book("reading the template");
+
+  progress.stage("registering scans", job.folder.expressions.size() + 1);
+  const Neutral neutral = registerNeutralScan(job, report);
+  report.region_triangles = static_cast<int>(neutral.region.size());
+  progress.advance(1);
+  clock.book("neutral");
+  io::createDirectories(staged.path() / "expressions");
+  for (const fs::path& file : job.folder.expressions) {
+    report.scans.push_back(registerExpressionScan(job, neutral, file));
+    if (report.scans.back().coverage < kLittleShown) {
+      progress.note(fmt::format("{}: the scan shows {:.0f} % of the region; the rest is filled from the neutral",
+                                report.scans.back().name, 100.0 * report.scans.back().coverage));
+    }
+    progress.advance(report.scans.size());
+  }
+  clock.book("expressions");
+  writeRegion(staged.path() / "face_region.txt", neutral.region);
+  writeManifest(job, report, fs::absolute(scans).lexically_normal().filename().string());
+  staged.commit();
+  clock.book("publishing");
+  report.seconds = clock.seconds();
+  return report;
+}
+
+}  // namespace facezip

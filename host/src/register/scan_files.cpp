@@ -1,0 +1,108 @@
+#include "register/scan_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "facezip/error.hpp"
+#include "facezip/geometry/obj_io.hpp"
+#include "facezip/geometry/textured_obj.hpp"
+#include "image/input_extensions.hpp"
+#include "package/safe_names.hpp"
+
+namespace facezip::registration {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kNeutral = "neutral";
+
+fs::path meshFolder(const fs::path& directory) {
+  std::error_code error;
+  if (!fs::is_directory(directory, error)) {
+    throw InputError({directory.string(), "scans", "a directory with neutral.obj and a mesh for each expression",
+                      fs::exists(directory, error) ? "a file" : "no such directory", ""});
+  }
+  return fs::is_directory(directory / "scans", error) ? directory / "scans" : directory;
+}
+
+/// The image beside the mesh that has its name. Empty if there is none.
+fs::path imageBeside(const fs::path& mesh) {
+  std::vector<fs::path> found;
+  std::error_code error;
+  for (fs::directory_iterator entry(mesh.parent_path(), error); !error && entry != fs::directory_iterator();
+       entry.increment(error)) {
+    if (entry->path().stem() == mesh.stem() && image::hasImageExtension(entry->path())) found.push_back(entry->path());
+  }
+  return found.empty() ? fs::path() : *std::min_element(found.begin(), found.end());
+}
+
+void requireUvs(const Scan& scan) {
+  if (scan.mesh.uv_triangles.rows() > 0) return;
+  throw InputError({scan.file.string(), "", "texture coordinates", "none", "export the scan with its UVs"});
+}
+
+/// Materials that triangles have get a texture each; the others none.
+void requireTextures(Scan& scan) {
+  std::vector<bool> used(scan.textures.size(), false);
+  for (const int material : scan.materials) used[static_cast<std::size_t>(material)] = true;
+  const bool none =
+      std::all_of(scan.textures.begin(), scan.textures.end(), [](const fs::path& f) { return f.empty(); });
+  const fs::path beside = none ? imageBeside(scan.file) : fs::path();
+  for (std::size_t m = 0; m < scan.textures.size(); ++m) {
+    if (!used[m]) {
+      scan.textures[m].clear();
+    } else if (scan.textures[m].empty()) {
+      scan.textures[m] = beside;
+    }
+    if (!used[m] || !scan.textures[m].empty()) continue;
+    throw InputError({scan.file.string(), "",
+                      "a texture: map_Kd in its material library, or an image of the scan's name beside it",
+                      none ? "none" : "triangles of a material without one", ""});
+  }
+}
+
+}  // namespace
+
+ScanFolder openScans(const fs::path& directory, const fs::path& landmarks) {
+  ScanFolder found;
+  const fs::path folder = meshFolder(directory);
+  for (const fs::path& file : geometry::objFiles(folder)) {
+    const std::string name = file.stem().string();
+    if (name == kNeutral) {
+      found.neutral = file;
+      continue;
+    }
+    if (const auto fault = package::nameFault(name, ",=")) {
+      throw InputError({file.string(), "scan", fault->expected, fault->got, "rename the file"});
+    }
+    found.expressions.push_back(file);
+  }
+  if (found.neutral.empty()) throw InputError({folder.string(), "scans", "neutral.obj", "none", "name the neutral so"});
+  if (found.expressions.empty()) {
+    throw InputError({folder.string(), "scans", "an expression, NAME.obj, beside the neutral", "none", ""});
+  }
+  found.landmark_file = landmarks.empty() ? directory / "landmarks.json" : landmarks;
+  found.landmarks = readScanLandmarks(found.landmark_file);
+  return found;
+}
+
+Scan readScan(const fs::path& file) {
+  geometry::TexturedMesh read = geometry::readTexturedObj(file);
+  Scan scan;
+  scan.name = file.stem().string();
+  scan.file = file;
+  scan.mesh = std::move(read.mesh);
+  requireUvs(scan);
+  std::vector<int> kept;
+  try {
+    scan.cleaning = geometry::cleanScan(scan.mesh, &kept);
+  } catch (const InputError& error) {
+    throw error.in(file.string());
+  }
+  for (const int triangle : kept) scan.materials.push_back(read.materials[static_cast<std::size_t>(triangle)]);
+  scan.textures = std::move(read.textures);
+  requireTextures(scan);
+  return scan;
+}
+
+}  // namespace facezip::registration

@@ -1,0 +1,40 @@
+// scan_files.hpp - raw scans, from disk.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "facezip/geometry/mesh.hpp"
+#include "facezip/geometry/scan_surface.hpp"
+#include "register/landmark_files.hpp"
+
+namespace facezip::registration {
+
+/// The scans of a folder: files are named, not read.
+struct ScanFolder {
+  std::filesystem::path neutral;                   ///< mesh of the neutral
+  std::vector<std::filesystem::path> expressions;  ///< N >= 1 meshes, by name
+  std::filesystem::path landmark_file;
+  ScanLandmarks landmarks;
+};
+
+/// Finds NAME.obj in DIR/scans, or in DIR itself, and reads DIR/landmarks.json, or `landmarks` where that is not empty.
+/// Throws InputError: no directory, no neutral.obj, no expression, names that a capture cannot hold, no landmarks.
+ScanFolder openScans(const std::filesystem::path& directory, const std::filesystem::path& landmarks);
+
+/// A scan, cleaned.
+struct Scan {
+  std::string name;
+  std::filesystem::path file;
+  geometry::TriangleMesh mesh;                  ///< with UVs; in the unit of the file
+  std::vector<int> materials;                   ///< #T, index into textures
+  std::vector<std::filesystem::path> textures;  ///< images; empty for materials that no triangle has
+  geometry::ScanCleaning cleaning;
+};
+
+/// Reads a scan with the textures that its materials name; where they name none, NAME.png (or another image) beside it.
+/// Throws InputError: a mesh without UVs, a material without a texture that triangles have, nothing but crumbs.
+Scan readScan(const std::filesystem::path& file);
+
+}  // namespace facezip::registration

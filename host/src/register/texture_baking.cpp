@@ -1,0 +1,196 @@
+#include "register/texture_baking.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "facezip/error.hpp"
+#include "facezip/geometry/mesh_edges.hpp"
+#include "image/set_sample.hpp"
+#include "io/counts.hpp"
+#include "register/resample.hpp"
+
+namespace facezip::registration {
+namespace {
+
+constexpr double kLeastCosine = 0.3;
+constexpr double kReach = 3.0;           // millimetres between mesh and scan
+constexpr double kHalfConfidence = 1.0;  // distance at which confidence is half
+constexpr int kBandRows = 128;
+
+std::uint8_t confidenceOf(double cosine, double distance) {
+  const double share = distance / kHalfConfidence;
+  return static_cast<std::uint8_t>(std::lround(std::clamp(255.0 * cosine / (1.0 + share * share), 1.0, 255.0)));
+}
+
+/// The texture with every `factor` by `factor` texels averaged to one; those at the right and below may be fewer.
+/// Alpha and what else is beyond one or three channels is left out.
+image::Image readAveraged(const std::filesystem::path& file, int factor) {
+  image::ImageReader reader(file);
+  const image::ImageShape from = reader.shape();
+  image::ImageShape to = from;
+  to.width = divideUp(from.width, factor);
+  to.height = divideUp(from.height, factor);
+  to.channels = from.channels >= 3 ? 3 : 1;
+  image::Image averaged{to, std::vector<std::byte>(toSize(to.height) * to.rowBytes())};
+  image::Image rows{from, {}};
+  const Layout<3> place(to.height, to.width, to.channels);
+  for (int y = 0; y < to.height; ++y) {
+    const int begin = y * factor, end = std::min(begin + factor, from.height);
+    rows.shape.height = end - begin;
+    rows.samples.resize(toSize(end - begin) * from.rowBytes());
+    reader.readRows(begin, end, rows.samples);
+    const Layout<3> at(end - begin, from.width, from.channels);
+    tbb::parallel_for(0, to.width, [&](int x) {
+      const int columns = std::min(factor, from.width - x * factor);
+      for (int c = 0; c < to.channels; ++c) {
+        double sum = 0.0;
+        for (int j = 0; j < end - begin; ++j) {
+          for (int i = 0; i < columns; ++i) sum += double{image::sampleAt(rows, at(j, x * factor + i, c))};
+        }
+        image::setSample(averaged, place(y, x, c), static_cast<float>(sum / ((end - begin) * columns)));
+      }
+    });
+  }
+  return averaged;
+}
+
+/// How many texels of the scan's texture go on one of the layout, along each axis, on the whole.
+int averagingFactor(const raster::UvRaster& raster, const geometry::TriangleMesh& mesh,
+                    const Eigen::MatrixX3d& positions, const Scan& scan, const geometry::ScanSurface& surface,
+                    std::size_t material, const image::ImageShape& shape) {
+  const auto density = [](const geometry::TriangleMesh& of, const Eigen::MatrixX3d& at, double texels, auto wanted) {
+    double plane = 0.0, skin = 0.0;
+    for (Eigen::Index t = 0; t < of.triangles.rows(); ++t) {
+      if (!wanted(t)) continue;
+      const Eigen::RowVector2d a = of.uvs.row(of.uv_triangles(t, 0));
+      const Eigen::RowVector2d b = of.uvs.row(of.uv_triangles(t, 1)) - a, c = of.uvs.row(of.uv_triangles(t, 2)) - a;
+      plane += 0.5 * std::abs(b.x() * c.y() - b.y() * c.x());
+      skin += geometry::triangleArea(at, of.triangles, t);
+    }
+    return skin > 0.0 ? texels * plane / skin : 0.0;
+  };
+  const double source =
+      density(scan.mesh, surface.judged().positions, 1.0 * shape.width * shape.height,
+              [&](Eigen::Index t) { return scan.materials[toSize(t)] == static_cast<int>(material); });
+  const double layout =
+      density(mesh, positions, 1.0 * raster.width() * raster.height(), [](Eigen::Index) { return true; });
+  if (!(layout > 0.0)) return 1;
+  return std::clamp(static_cast<int>(std::sqrt(source / layout)), 1, 64);
+}
+
+/// Coordinates beyond 0 to 1 repeat the texture.
+double wrapped(double coordinate) {
+  return coordinate < 0.0 || coordinate > 1.0 ? coordinate - std::floor(coordinate) : coordinate;
+}
+
+/// Places in the texture of a material; NaN for texels of others.
+std::vector<float> placesOf(const std::vector<SeenTexel>& seen, const Scan& scan, int material, double columns,
+                            double rows) {
+  std::vector<float> places(2 * seen.size(), std::numeric_limits<float>::quiet_NaN());
+  tbb::parallel_for(std::size_t{0}, seen.size(), [&](std::size_t i) {
+    const SeenTexel& texel = seen[i];
+    if (texel.triangle < 0 || scan.materials[toSize(texel.triangle)] != material) return;
+    const double weights[3] = {double{texel.b0}, double{texel.b1}, 1.0 - double{texel.b0} - double{texel.b1}};
+    Eigen::RowVector2d uv = Eigen::RowVector2d::Zero();
+    for (int k = 0; k < 3; ++k) uv += weights[k] * scan.mesh.uvs.row(scan.mesh.uv_triangles(texel.triangle, k));
+    places[2 * i] = static_cast<float>(wrapped(uv.x()) * columns - 0.5);
+    places[2 * i + 1] = static_cast<float>((1.0 - wrapped(uv.y())) * rows - 0.5);
+  });
+  return places;
+}
+
+/// The textures of a scan that triangles have, on the device.
+struct Source {
+  int material;
+  double columns, rows;  ///< of the whole texture, in averaged texels
+  TextureSampler sampler;
+};
+
+std::vector<Source> openSources(const raster::UvRaster& raster, const geometry::TriangleMesh& mesh,
+                                const Eigen::MatrixX3d& positions, const Scan& scan,
+                                const geometry::ScanSurface& surface, device::DeviceContext& context) {
+  std::vector<Source> sources;
+  for (std::size_t m = 0; m < scan.textures.size(); ++m) {
+    if (scan.textures[m].empty()) continue;
+    const image::ImageShape shape = image::ImageReader(scan.textures[m]).shape();
+    const int factor = averagingFactor(raster, mesh, positions, scan, surface, m, shape);
+    const image::Image texture = readAveraged(scan.textures[m], factor);
+    sources.push_back({static_cast<int>(m), static_cast<double>(shape.width) / factor,
+                       static_cast<double>(shape.height) / factor, TextureSampler(context, texture)});
+    const image::ImageShape& first = sources.front().sampler.shape();
+    if (texture.shape.channels == first.channels && texture.shape.type == first.type) continue;
+    throw InputError({scan.textures[m].string(), "",
+                      fmt::format("{} channels of {} as the scan's other textures", first.channels,
+                                  image::sampleTypeName(first.type)),
+                      fmt::format("{} of {}", texture.shape.channels, image::sampleTypeName(texture.shape.type)), ""});
+  }
+  return sources;
+}
+
+}  // namespace
+
+std::vector<SeenTexel> seenTexels(const raster::UvRaster& raster, const Eigen::MatrixX3i& triangles,
+                                  const Eigen::MatrixX3d& positions, const geometry::ScanSurface& scan, int begin,
+                                  int end) {
+  const std::vector<raster::TexelSample> samples = raster.rows(begin, end);
+  const Eigen::MatrixX3d normals = geometry::vertexNormals(positions, triangles);
+  std::vector<SeenTexel> seen(samples.size());
+  const auto width = toSize(raster.width());
+  tbb::parallel_for(begin, end, [&](int row) {
+    int hint = -1;  // the texel before shows a point nearby
+    for (std::size_t i = toSize(row - begin) * width; i < toSize(row - begin + 1) * width; ++i) {
+      const raster::TexelSample& sample = samples[i];
+      if (sample.triangle < 0) continue;
+      const double weights[3] = {double{sample.b0}, double{sample.b1}, 1.0 - double{sample.b0} - double{sample.b1}};
+      Eigen::Vector3d point = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero();
+      for (int k = 0; k < 3; ++k) {
+        point += weights[k] * positions.row(triangles(sample.triangle, k)).transpose();
+        normal += weights[k] * normals.row(triangles(sample.triangle, k)).transpose();
+      }
+      normal.normalize();
+      const geometry::SurfacePoint found = scan.surface().closestFacing(point, normal, kLeastCosine, kReach, hint);
+      if (!found.found()) continue;
+      hint = found.triangle;
+      if (scan.surface().onBorder(found)) continue;
+      const double cosine = scan.surface().normals().row(found.triangle).dot(normal);
+      seen[i] = {found.triangle, static_cast<float>(found.barycentric[0]), static_cast<float>(found.barycentric[1]),
+                 confidenceOf(cosine, found.distance)};
+    }
+  });
+  return seen;
+}
+
+BakedTexture bakeTexture(const raster::UvRaster& raster, const geometry::TriangleMesh& mesh,
+                         const Eigen::MatrixX3d& positions, const Scan& scan, const geometry::ScanSurface& surface,
+                         device::DeviceContext& context, Progress& progress) {
+  std::vector<Source> sources = openSources(raster, mesh, positions, scan, surface, context);
+  BakedTexture baked;
+  baked.side = raster.width();
+  baked.channels = sources.front().sampler.shape().channels;
+  baked.type = sources.front().sampler.shape().type;
+  const std::size_t texels = toSize(raster.width(), raster.height());
+  baked.samples.assign(texels * toSize(baked.channels), 0.0f);
+  baked.confidence.assign(texels, 0);
+  for (int begin = 0; begin < raster.height(); begin += kBandRows) {
+    progress.checkCancelled();
+    const int end = std::min(begin + kBandRows, raster.height());
+    const std::vector<SeenTexel> seen = seenTexels(raster, mesh.triangles, positions, surface, begin, end);
+    const std::size_t first = toSize(begin, raster.width());
+    const std::span<float> samples =
+        std::span(baked.samples).subspan(first * toSize(baked.channels), seen.size() * toSize(baked.channels));
+    for (Source& source : sources) {
+      source.sampler.sample(placesOf(seen, scan, source.material, source.columns, source.rows), samples);
+    }
+    for (std::size_t i = 0; i < seen.size(); ++i) baked.confidence[first + i] = seen[i].confidence;
+  }
+  const float scale = image::unit255(baked.type) / 255.0f;
+  for (float& sample : baked.samples) sample *= scale;
+  return baked;
+}
+
+}  // namespace facezip::registration

@@ -1,0 +1,166 @@
+#include "facezip/registration.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "facezip/capture.hpp"
+#include "facezip/error.hpp"
+#include "facezip/geometry/closest_surface.hpp"
+#include "facezip/geometry/deformation_transfer.hpp"
+#include "facezip/geometry/topology.hpp"
+#include "facezip/report.hpp"
+#include "register/hole_filling.hpp"
+#include "scan_set.hpp"
+#include "temporary_directory.hpp"
+#include "test_device.hpp"
+
+namespace facezip {
+namespace {
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+
+constexpr int kSide = 128;
+
+struct Notes : Progress {
+  void note(std::string_view message) override { text += std::string(message) + "\n"; }
+  std::string text;
+};
+
+/// Scans, and the capture that was made of them, once for all tests.
+struct Registered {
+  test::TemporaryDirectory folder;
+  test::ScanSet set;
+  RegistrationReport report;
+  Notes notes;
+
+  Registered() {
+    set.write(folder / "scans", folder / "template");
+    RegistrationOptions options;
+    options.resolution = kSide;
+    options.unit = "cm";
+    report =
+        registerScans(folder / "scans", folder / "template", folder / "capture", options, test::testDevice(), notes);
+  }
+  static const Registered& once() {
+    static const Registered made;
+    return made;
+  }
+};
+
+/// Distances in millimetres of a mesh of the capture (cm) from the truth (m), heads aligned.
+geometry::Distances distancesOf(const fs::path& file, const Eigen::MatrixX3d& truth) {
+  const Eigen::MatrixX3d mesh = 10.0 * geometry::readObj(file).positions;
+  const Eigen::MatrixX3d goal = 1000.0 * truth;
+  return geometry::distancesBetween(geometry::fitSimilarity(mesh, goal, {}, true).apply(mesh), goal);
+}
+
+TEST(Registration, MeshesLieOnTheScans) {
+  const Registered& made = Registered::once();
+  ASSERT_EQ(made.report.scans.size(), 2u);
+  for (const RegisteredScan& scan : made.report.scans) {
+    EXPECT_LT(scan.mean, 0.1) << scan.name;
+    EXPECT_LT(scan.mean, scan.model_mean) << scan.name;
+    EXPECT_GT(scan.matched, 0.95) << scan.name;
+    EXPECT_GT(scan.coverage, 0.9) << scan.name;
+  }
+}
+
+TEST(Registration, PointsKeepTheirPlaceOnTheSkin) {
+  const Registered& made = Registered::once();
+  const geometry::Distances neutral = distancesOf(made.folder / "capture/neutral.obj", made.set.truth(0.0));
+  const geometry::Distances open = distancesOf(made.folder / "capture/expressions/open.obj", made.set.truth(0.8));
+  EXPECT_LT(neutral.mean, 1.2);
+  EXPECT_LT(open.mean, 1.2);
+  // What textures are misaligned by: how the expression moves against the neutral, which slides less than either.
+  const Eigen::MatrixX3d moved = 10.0 * (geometry::readObj(made.folder / "capture/expressions/open.obj").positions -
+                                         geometry::readObj(made.folder / "capture/neutral.obj").positions);
+  const Eigen::MatrixX3d truth = 1000.0 * (made.set.truth(0.8) - made.set.truth(0.0));
+  EXPECT_GT(truth.rowwise().norm().mean(), 2.0);
+  EXPECT_LT((moved - truth).rowwise().norm().mean(), 0.5);
+}
+
+TEST(Registration, TexturesAreTheScansInTheTemplatesLayout) {
+  const Registered& made = Registered::once();
+  const image::Image confidence = image::readImage(made.folder / "capture/confidence/open.png");
+  ASSERT_EQ(confidence.shape, (image::ImageShape{kSide, kSide, 1, image::SampleType::kUint8}));
+  const image::Image neutral = image::readImage(made.folder / "capture/albedo/neutral.png");
+  const image::Image open = image::readImage(made.folder / "capture/albedo/open.png");
+  ASSERT_EQ(open.shape, (image::ImageShape{kSide, kSide, 3, image::SampleType::kUint8}));
+  double sum = 0.0, contrast = 0.0;
+  int count = 0;
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      const auto at = static_cast<std::size_t>(y * kSide + x);
+      if (image::sampleAt(confidence, at) < 0.5f) continue;
+      const double expected = test::ScanSet::skin((x + 0.5) / kSide, 1.0 - (y + 0.5) / kSide);
+      sum += std::abs(255.0 * double{image::sampleAt(open, 3 * at)} - expected);
+      contrast += std::abs(128.0 - expected);
+      ++count;
+    }
+  }
+  EXPECT_GT(count, kSide * kSide / 4);
+  EXPECT_LT(sum, 0.2 * contrast) << "off by " << sum / count << " of " << contrast / count;
+  // Neither black nor a seam where nothing was seen: the neutral's skin.
+  for (std::size_t i = 0; i < static_cast<std::size_t>(kSide * kSide); ++i) {
+    if (image::sampleAt(confidence, i) > 0.0f) continue;
+    EXPECT_NEAR(double{image::sampleAt(open, 3 * i)}, double{image::sampleAt(neutral, 3 * i)}, 0.5);
+  }
+}
+
+TEST(Registration, TheResultIsACapture) {
+  const Registered& made = Registered::once();
+  const Capture capture = openCapture(made.folder / "capture");
+  EXPECT_THAT(capture.expressions, testing::ElementsAre("open"));
+  ASSERT_EQ(capture.maps.size(), 1u);
+  EXPECT_EQ(capture.maps[0].name, "albedo");
+  EXPECT_EQ(capture.unit, "cm");
+  EXPECT_TRUE(capture.face_region.has_value());
+  const geometry::TriangleMesh neutral = geometry::readObj(capture.neutral_mesh);
+  EXPECT_NO_THROW(geometry::requireSameTopology(made.set.mesh(), "", neutral, ""));
+}
+
+TEST(Registration, TheHeadsMotionIsTakenOutAndTold) {
+  const RegisteredScan& open = Registered::once().report.scans[1];
+  EXPECT_NEAR(open.degrees, (0.03 + 0.05) * 180.0 / 3.14159265, 0.7);
+  EXPECT_GT(open.millimetres, 5.0);
+}
+
+TEST(Registration, ReportsAsJson) {
+  const nlohmann::json report = nlohmann::json::parse(toJson(Registered::once().report));
+  EXPECT_EQ(report["facezip_report"], "register");
+  EXPECT_EQ(report["scans"].size(), 2u);
+  EXPECT_EQ(report["scans"][1]["name"], "open");
+  EXPECT_GT(report["scans"][1]["head_motion"]["degrees"].get<double>(), 1.0);
+}
+
+TEST(HoleFilling, KeepsWhatIsKnownAndGoesOnSmoothly) {
+  constexpr int kWidth = 37, kHeight = 21;
+  std::vector<float> values(kWidth * kHeight * 2, 0.0f);
+  std::vector<std::uint8_t> known(kWidth * kHeight, 0);
+  const auto truth = [](int x, int y, int c) { return 0.01f * static_cast<float>(c == 0 ? x : 2 * y); };
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      known[static_cast<std::size_t>(y * kWidth + x)] = std::hypot(x - 18, y - 10) > 4.0 ? 1 : 0;
+      for (int c = 0; c < 2; ++c) {
+        values[static_cast<std::size_t>((y * kWidth + x) * 2 + c)] =
+            known[static_cast<std::size_t>(y * kWidth + x)] != 0 ? truth(x, y, c) : 99.0f;
+      }
+    }
+  }
+  registration::fillHoles(values, 2, kWidth, kHeight, known);
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      for (int c = 0; c < 2; ++c) {
+        const bool seen = known[static_cast<std::size_t>(y * kWidth + x)] != 0;
+        EXPECT_NEAR(values[static_cast<std::size_t>((y * kWidth + x) * 2 + c)], truth(x, y, c), seen ? 0.0f : 0.07f);
+      }
+    }
+  }
+  std::fill(known.begin(), known.end(), std::uint8_t{0});
+  registration::fillHoles(values, 2, kWidth, kHeight, known);
+  EXPECT_THAT(values, testing::Each(0.0f));
+}
+
+}  // namespace
+}  // namespace facezip

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "facezip/blend.hpp"
+#include "facezip/block_format.hpp"
 #include "facezip/capture.hpp"
 #include "facezip/check.hpp"
 #include "facezip/compress.hpp"

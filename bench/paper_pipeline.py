@@ -158,14 +158,15 @@ def texels_of_triangles(uvs, triangles, size):
     return texels, triangle_of.ravel()[texels], weights.reshape(-1, 3)[texels]
 
 
-def texel_masks(phi, vertices, triangles, texels_triangle, texels_weights, cutoff):
-    """M, K x P: phi in the UV space, within [0, 1], normalised to sum to one."""
+def texel_masks(phi, vertices, triangles, texels_triangle, texels_weights, cutoff, unclamped):
+    """M, K x P: phi in the UV space, within [0, 1] unless it is to stay as it is, normalised to sum to one."""
     corners = np.searchsorted(vertices, triangles[:, :, 0])[texels_triangle]
     masks = np.empty((phi.shape[1], len(corners)), dtype=np.float32)
     for k in range(phi.shape[1]):
         masks[k] = (phi[corners, k] * texels_weights).sum(axis=1)
-    masks = np.clip(masks, 0.0, 1.0)
-    masks[masks < cutoff] = 0.0  # "the value outside the fragment is zero"
+    if not unclamped:
+        masks = np.clip(masks, 0.0, 1.0)
+    masks[np.abs(masks) < cutoff] = 0.0  # "the value outside the fragment is zero"
     return masks / masks.sum(axis=0)
 
 
@@ -251,7 +252,7 @@ def run_paper(folder, arguments, radius):
         samples = poisson_disk(positions, np.unique(triangles[:, :, 0]), radius, random)
         phi, vertices = biharmonic_weights(triangles, samples)
         texels, triangle, weights = texels_of_triangles(uvs, triangles, neutral.shape[0])
-        masks = texel_masks(phi, vertices, triangles, triangle, weights, arguments.cutoff)
+        masks = texel_masks(phi, vertices, triangles, triangle, weights, arguments.cutoff, arguments.unclamped)
     differences = (expressions - neutral).reshape(len(expressions), -1, 3)[:, texels]
     del expressions
     with stages("clustering"):
@@ -262,7 +263,7 @@ def run_paper(folder, arguments, radius):
     with stages("textures and weights"):
         rmse = reconstruction_rmse(differences, masks, labels, centres, order)
     return {"seconds": stages.seconds | {"total": time.perf_counter() - start}, "masks": len(masks),
-            "pairs": len(tables), "covered_texels": len(texels), "permutation_cost": cost, "rmse": rmse,
+            "phi": [float(phi.min()), float(phi.max())], "pairs": len(tables), "covered_texels": len(texels), "permutation_cost": cost, "rmse": rmse,
             "peak_memory": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024}
 
 
@@ -284,7 +285,7 @@ def run_facezip(folder, arguments, scratch):
 def facezip_stages(report):
     """Its stages, gathered into the paper's: what the paper's clustering does to texels are its Gram matrices."""
     seconds = report["seconds"]
-    groups = {"masks": ("masks", "weight grid", "overlaps"), "clustering": ("Gram matrices", "clustering"),
+    groups = {"masks": ("masks", "weight grid"), "clustering": ("Gram matrices", "clustering"),
               "permutation": ("seam costs", "permutation")}
     missing = [stage for stages in groups.values() for stage in stages if stage not in seconds]
     if missing:
@@ -307,6 +308,7 @@ def main():
     parser.add_argument("--resolution", type=int, default=512, help="side that textures are resized to [512]")
     parser.add_argument("--cropped", action="store_true",
                         help="crop fragments to the texels of their mask, which the text does not say")
+    parser.add_argument("--unclamped", action="store_true", help="take phi as it is, beyond 0 and 1 too")
     parser.add_argument("--cutoff", type=float, default=0.01, help="mask weights below this are 0 [0.01, as facezip's]")
     parser.add_argument("--restarts", type=int, default=100, help="random starts of the permutation search [100]")
     parser.add_argument("--seed", type=int, default=1)
@@ -327,7 +329,8 @@ def main():
               "cropped": arguments.cropped, "device": report["device"], "scikit-learn": sklearn.__version__,
               "rows": table, "paper": paper, "facezip": {"masks": report["masks"], "seconds": report["seconds"],
                                                          "peak_memory": report["bytes"]["peak_memory"]}}
-    print(f"{arguments.resolution} x {arguments.resolution}, paper: {paper['masks']} masks, RMSE {paper['rmse']:.3f}; "
+    print(f"{arguments.resolution} x {arguments.resolution}, paper: {paper['masks']} masks, phi {paper['phi'][0]:.2f} to "
+          f"{paper['phi'][1]:.2f}, RMSE {paper['rmse']:.3f}; "
           f"facezip: {report['masks']} masks\n")
     print("| stage | paper's pipeline (s) | facezip (s) | ratio |\n|---|---|---|---|")
     for name, row in table.items():

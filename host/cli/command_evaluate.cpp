@@ -78,7 +78,8 @@ void addEvaluateCommand(CLI::App& app, const CommonOptions& common) {
   command->add_option("package", arguments->package, "Directory of the package")->required()->type_name("PACKAGE");
   command
       ->add_option("--baselines", arguments->baselines,
-                   "What to compare with: every texture in bc1, bc7, astc-4x4, -5x5, -6x6, -8x8 or -10x10; pca4, pca8, limit (best components of every block), no-permutation, paper, "
+                   "What to compare with: every texture in bc1, bc7, astc-4x4, -5x5, -6x6, -8x8 or -10x10; pca4, pca8, "
+                   "limit (best components of every block), no-permutation, paper, "
                    "closed-loop, refined, weights-per-map, compress-stretch (each compresses once more), or none")
       ->delimiter(',')
       ->check(CLI::IsMember(baselineNames()))

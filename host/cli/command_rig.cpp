@@ -22,7 +22,7 @@ void addRigCommand(CLI::App& app, const CommonOptions& common) {
     std::vector<std::string> maps;
     int iterations = geometry::ExampleRigOptions{}.iterations;
     std::string transfer = "best";
-    std::string texture_solve = "local";
+    std::string texture_solve;
     bool head_motion = false;
     double texture_damping = 0.0;
     std::string device = "auto";
@@ -59,10 +59,10 @@ void addRigCommand(CLI::App& app, const CommonOptions& common) {
       ->capture_default_str();
   command
       ->add_option("--texture-solve", arguments->texture_solve,
-                   "Textures of the shapes: local (a wrinkle belongs to shapes that strain the skin there), damped, or "
-                   "pseudo-inverse (the FaceZip paper's)")
-      ->check(CLI::IsMember(allNames<TextureSolve>()))
-      ->capture_default_str();
+                   "Textures of the shapes: local (a wrinkle belongs to shapes that strain the skin there), damped, "
+                   "pseudo-inverse (the FaceZip paper's) or strain (compress and stretch maps'); default: what belongs "
+                   "to the method, local with refined and closed-loop")
+      ->check(CLI::IsMember(allNames<TextureSolve>()));
   command->add_flag("--head-motion", arguments->head_motion,
                     "Take the rigid motion of the head out of every expression's mesh");
   CLI::Option* damping =
@@ -86,7 +86,7 @@ void addRigCommand(CLI::App& app, const CommonOptions& common) {
                                                                     : geometry::ShapeTransfer::kBest;
     options.fit.head_motion = arguments->head_motion;
     options.guess = arguments->guess;
-    options.texture_solve = *findNamed<TextureSolve>(arguments->texture_solve);  // CLI11 has checked it
+    options.texture_solve = findNamed<TextureSolve>(arguments->texture_solve);  // CLI11 has checked it
     if (damping->count() > 0) options.texture_damping = arguments->texture_damping;
     TerminalProgress progress(common.quiet);
     const CancelOnSignal cancel(progress);

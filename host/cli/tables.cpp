@@ -162,6 +162,10 @@ void printCompressReport(const CompressReport& report) {
     say("\n");
   }
   for (const auto& [map, rmse] : report.rmse) say("{}: RMSE {:.3f} (0..255)\n", map, rmse);
+  if (report.pooled_rmse && (report.rmse.size() > 1 || report.rate)) {
+    say("all maps: RMSE {:.3f}{}\n", *report.pooled_rmse,
+        report.rate ? fmt::format(", expected were {:.3f}", report.rate->rmse) : "");
+  }
   say("package on disk {}, peak memory {}\n\n", formatMegabytes(report.package_disk_bytes),
       formatMegabytes(report.peak_memory_bytes));
   printSeconds(report.seconds);

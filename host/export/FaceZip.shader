@@ -1,4 +1,4 @@
-// Skin whose albedo, normal and roughness follow the expressions: FaceZip.hlsl blends them, FaceZipDriver.cs brings the weights.
+// Skin whose albedo, normal, roughness and occlusion follow the expressions: FaceZip.hlsl blends them, FaceZipDriver.cs brings the weights.
 Shader "FaceZip/@NAME@" {
   Properties {
     @PROPERTIES@
@@ -57,7 +57,7 @@ Shader "FaceZip/@NAME@" {
         surface.albedo = face.albedo;
         surface.smoothness = 1.0 - face.roughness;
         surface.normalTS = face.normal;
-        surface.occlusion = 1.0;
+        surface.occlusion = face.occlusion;
         surface.alpha = 1.0;
         InputData light = (InputData)0;
         light.positionWS = input.world;
@@ -96,11 +96,13 @@ Shader "FaceZip/@NAME@" {
       output.Albedo = float3(input.mesh_uv, 0.0);
       output.Normal = float3(input.mesh_uv, 1.0);
       output.Smoothness = input.mesh_uv.x;
+      output.Occlusion = input.mesh_uv.y;
       #else
       FaceZipSurface face = facezip_surface(input.mesh_uv);
       output.Albedo = face.albedo;
       output.Normal = face.normal;
       output.Smoothness = 1.0 - face.roughness;
+      output.Occlusion = face.occlusion;
       #endif
     }
     ENDCG

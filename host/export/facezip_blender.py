@@ -198,15 +198,51 @@ def first_of(inputs, *names):
     return inputs[next(name for name in names if name in inputs)]
 
 
-# What a map is in a physical material, by the first of these parts that its name holds: as exports for engines have it.
-ROLES = (("albedo", "albedo"), ("diffuse", "albedo"), ("normal", "normal"), ("roughness", "roughness"))
+def roles_of_maps():
+    """What maps are in a physical material, by their names: as facezip says in the scene."""
+    with open(os.path.join(HERE, "scene.gltf"), encoding="utf-8") as file:
+        roles = json.load(file)["materials"][0]["extras"]["facezip"]["roles"]
+    return {name: role for role, name in roles.items()}
 
 
-def role_of(name):
-    return next((role for part, role in ROLES if part in name.lower()), None)
+# What Blender starts with: a cube of two metres, around the head, a camera in its middle, and a lamp.
+FACTORY_OBJECTS = {"Cube": "MESH", "Camera": "CAMERA", "Light": "LIGHT"}
+
+
+def clear_factory_scene():
+    """Takes the objects of an untouched factory scene away; a scene of somebody's own stays as it is."""
+    objects = bpy.context.scene.objects
+    if bpy.data.filepath or {o.name: o.type for o in objects} != FACTORY_OBJECTS:
+        return
+    for made in list(objects):
+        bpy.data.objects.remove(made, do_unlink=True)
+
+
+def set_stage(face):
+    """A camera before the face and a sun, where the scene has none: what is rendered then shows the face."""
+    from mathutils import Vector
+
+    scene = bpy.context.scene
+    if scene.camera is None:
+        corners = [face.matrix_world @ Vector(c) for c in face.bound_box]
+        centre = sum(corners, Vector()) / 8
+        size = max((c - centre).length for c in corners)
+        camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
+        camera.location = centre + Vector((0, -4.2 * size, 0))
+        camera.rotation_euler = (1.5708, 0, 0)
+        camera.data.clip_start = size / 100
+        camera.data.clip_end = 100 * size
+        scene.collection.objects.link(camera)
+        scene.camera = camera
+    if not any(o.type == "LIGHT" for o in scene.objects):
+        sun = bpy.data.objects.new("sun", bpy.data.lights.new("sun", "SUN"))
+        sun.data.energy = 3
+        sun.rotation_euler = (0.9, 0.3, 0.4)
+        scene.collection.objects.link(sun)
 
 
 def build(package):
+    clear_factory_scene()
     bpy.ops.import_scene.gltf(filepath=os.path.join(HERE, "scene.gltf"))
     face = next(o for o in bpy.context.selected_objects if o.type == "MESH")
     material = bpy.data.materials.new(package["name"] or "face")
@@ -220,15 +256,12 @@ def build(package):
     uv = graph.node("ShaderNodeUVMap").outputs[0]
     controls = controls_of(face, package["expressions"])
     betas = beta_nodes(graph, face, package["expressions"], controls)
-    values, taken = {}, set()
+    values, roles = {}, roles_of_maps()
     for blend_map in package["maps"]:
         if not blend_map["neutral"]["file"].endswith(".png"):
             continue
         value = values[blend_map["name"]] = blended_map(graph, uv, package, blend_map, betas)
-        role = role_of(blend_map["name"])
-        if role in taken:  # the first map of a role has it
-            continue
-        taken.add(role)
+        role = roles.get(blend_map["name"])
         if role == "albedo":
             linear = blend_map["colour_space"] == "linear"
             graph.put(shader.inputs["Base Color"], value if linear else to_linear(graph, value))
@@ -238,6 +271,7 @@ def build(package):
             graph.put(shader.inputs["Normal"], normal.outputs[0])
         elif role == "roughness":
             graph.put(shader.inputs["Roughness"], graph.separate(value)[0])
+    set_stage(face)
     return face, graph, values, controls
 
 
@@ -289,27 +323,12 @@ def bake(face, graph, package, values, request):
     graph.tree.links.new(nodes["Principled BSDF"].outputs[0], output.inputs[0])
 
 
-def render(face, file):
-    from mathutils import Vector
-
+def render(file):
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
     scene.cycles.samples = 4
     scene.cycles.use_denoising = False  # Debian builds without a denoiser
     scene.render.resolution_x = scene.render.resolution_y = 256
-    corners = [face.matrix_world @ Vector(c) for c in face.bound_box]
-    centre = sum(corners, Vector()) / 8
-    size = max((c - centre).length for c in corners)
-    camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
-    camera.location = centre + Vector((0, -4.2 * size, 0))
-    camera.rotation_euler = (1.5708, 0, 0)
-    camera.data.clip_start = size / 100
-    scene.collection.objects.link(camera)
-    scene.camera = camera
-    sun = bpy.data.objects.new("sun", bpy.data.lights.new("sun", "SUN"))
-    sun.data.energy = 3
-    sun.rotation_euler = (0.9, 0.3, 0.4)
-    scene.collection.objects.link(sun)
     scene.render.filepath = file
     bpy.ops.render.render(write_still=True)
 
@@ -326,7 +345,7 @@ def main(arguments):
     if "--bake" in options:
         bake(face, graph, package, values, options["--bake"])
     if "--render" in options:
-        render(face, options["--render"])
+        render(options["--render"])
     if "--save" in options:
         bpy.ops.wm.save_as_mainfile(filepath=os.path.abspath(options["--save"]))
 

@@ -1,6 +1,5 @@
 // capture.json.
 #include "capture/capture_json.hpp"
-
 #include "fuzz_file.hpp"
 #include "fuzz_input.hpp"
 

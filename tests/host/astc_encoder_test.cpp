@@ -71,7 +71,7 @@ TEST(AstcEncoder, DecodesToWhatItSays) {
       makeBlockDecoder(info.format, channels)->decode(of.width, of.rows, coded.blocks, std::span(decoded));
       EXPECT_EQ(decoded, coded.decoded) << info.name << " of " << channels;
       const double texels_of_block = info.block_width * info.block_height;
-      EXPECT_LT(rmse(of, coded), 1.5 + 0.1 * texels_of_block) << info.name << " of " << channels;
+      EXPECT_LT(rmse(of, coded), 1.8 + 0.12 * texels_of_block) << info.name << " of " << channels;
     }
   }
 }

@@ -51,8 +51,13 @@ std::vector<unsigned char> toCodes(const std::vector<std::byte>& bytes) {
   return {begin, begin + bytes.size()};
 }
 
-/// Map `m` of the sample, blended in double by the words of the format.
-std::vector<double> expectedFrame(const SamplePackage& sample, std::size_t m, const std::vector<float>& beta) {
+/// What a frame of the format is made of.
+struct Parts {
+  reference::Textures textures;
+  reference::WeightMaps weights;
+};
+
+Parts partsOf(const SamplePackage& sample, std::size_t m) {
   const PackageDescription& d = sample.description;
   const PackageMap& map = d.maps[m];
   reference::Textures textures{
@@ -70,7 +75,52 @@ std::vector<double> expectedFrame(const SamplePackage& sample, std::size_t m, co
   const reference::WeightMaps weights{
       w.tile_width, w.tile_height, d.differences, static_cast<int>(d.expressions.size()), toCodes(sample.weights[set]),
       w.scale,      w.offset};
-  return reference::blendFrame(textures, reference::blendWeights(weights, beta), w.tile_width, w.tile_height);
+  return {textures, weights};
+}
+
+/// Map `m` of the sample, blended in double by the words of the format.
+std::vector<double> expectedFrame(const SamplePackage& sample, std::size_t m, const std::vector<float>& beta) {
+  const Parts parts = partsOf(sample, m);
+  return reference::blendFrame(parts.textures, reference::blendWeights(parts.weights, beta), parts.weights.columns,
+                               parts.weights.rows);
+}
+
+/// How far a frame may be off, by the words of the format: every term by its size.
+std::vector<double> allowedErrors(const SamplePackage& sample, std::size_t m, std::vector<float> beta) {
+  Parts parts = partsOf(sample, m);
+  // A 256th of a code of each difference texture, times the weights as they are.
+  reference::Textures steps = parts.textures;
+  std::ranges::fill(steps.neutral, 0.0);
+  for (std::size_t i = 0; i < steps.codes.size(); ++i) {
+    std::ranges::fill(steps.codes[i], std::ldexp(1.0, -8));
+    std::ranges::fill(steps.offset[i], 0.0);
+  }
+  std::vector<double> weights = reference::blendWeights(parts.weights, beta);
+  for (double& weight : weights) weight = std::abs(weight);
+  const std::vector<double> of_codes = reference::blendFrame(steps, weights, parts.weights.columns, parts.weights.rows);
+  double k = parts.textures.differences + 16;
+  for (float& b : beta) {
+    k += b != 0.0f ? 1 : 0;
+    b = std::abs(b);
+  }
+  if (const int s = parts.textures.weight_scale; (s & (s - 1)) != 0) {
+    k += 2 * std::max(parts.weights.columns, parts.weights.rows);
+  }
+  for (double& offset : parts.weights.offset) offset = std::abs(offset);
+  for (double& value : parts.textures.neutral) value = std::abs(value);
+  const auto channels = static_cast<std::size_t>(parts.textures.channels);
+  for (std::size_t i = 0; i < parts.textures.codes.size(); ++i) {
+    for (std::size_t s = 0; s < parts.textures.codes[i].size(); ++s) {
+      double& code = parts.textures.codes[i][s];
+      code = std::abs(parts.textures.scale[i][s % channels] * code + parts.textures.offset[i][s % channels]);
+    }
+    parts.textures.scale[i].assign(channels, 1.0);
+    parts.textures.offset[i].assign(channels, 0.0);
+  }
+  std::vector<double> errors = reference::blendFrame(parts.textures, reference::blendWeights(parts.weights, beta),
+                                                     parts.weights.columns, parts.weights.rows);
+  for (std::size_t s = 0; s < errors.size(); ++s) errors[s] = k * std::ldexp(1.0, -24) * errors[s] + of_codes[s];
+  return errors;
 }
 
 std::vector<float> someWeights(std::size_t expressions) {
@@ -113,6 +163,28 @@ TEST_P(BlenderFrames, AgreeWithTheReference) {
       const auto rounded = [&](double value) { return std::clamp(std::floor(value + 0.5), 0.0, fullScale(type)); };
       ASSERT_TRUE(got >= rounded(expected[s] - slack) && got <= rounded(expected[s] + slack))
           << s << ": " << expected[s] << " gave " << got;
+    }
+  }
+}
+
+/// Weights far beyond 1 sum to large numbers that may cancel.
+TEST_P(BlenderFrames, KeepToTheStatedToleranceAtAnyWeight) {
+  Blender blender(*package_, testDevice());
+  for (const float size : {0.05f, 1.0f, 40.0f, 1000.0f}) {
+    std::vector<float> beta = someWeights(package_->expressions().size());
+    for (float& b : beta) b *= size * static_cast<float>(beta.size());
+    const std::vector<std::byte> frame = blendFrame(blender, *package_, 0, beta);
+    const std::vector<double> expected = expectedFrame(sample_, 0, beta), allowed = allowedErrors(sample_, 0, beta);
+    const SampleType type = GetParam().map.type;
+    for (std::size_t s = 0; s < expected.size(); ++s) {
+      const double got = sampleAt(frame, type, s);
+      if (type == SampleType::kFloat32) {
+        ASSERT_NEAR(got, expected[s], allowed[s]) << s;
+      } else {
+        const auto rounded = [&](double value) { return std::clamp(std::floor(value + 0.5), 0.0, fullScale(type)); };
+        ASSERT_TRUE(got >= rounded(expected[s] - allowed[s]) && got <= rounded(expected[s] + allowed[s]))
+            << s << ": " << expected[s] << " gave " << got << " at " << size;
+      }
     }
   }
 }

@@ -57,8 +57,7 @@ TEST_P(BlockPackage, IsSmallAndNearCapture) {
   EXPECT_EQ(map.neutral_file, "albedo/neutral.ktx2");
   EXPECT_EQ(map.differences[3].format, GetParam());
   const auto texture = static_cast<std::uint64_t>(blocks::blockBytes(GetParam(), map.width, map.height));
-  const std::uint64_t weights =
-      Package::open(folder / "images").bytesInMemory() - 5 * map.frameBytes();
+  const std::uint64_t weights = Package::open(folder / "images").bytesInMemory() - 5 * map.frameBytes();
   EXPECT_EQ(package.bytesInMemory(), 5 * texture + weights);
   // Spots on a smooth ground: images of this capture are exact but for rounding, and blocks nearly so.
   const double most = GetParam() == BlockFormat::kBc1 ? 1.6 : GetParam() == BlockFormat::kAstc6x6 ? 0.9 : 0.5;

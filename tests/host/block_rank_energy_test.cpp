@@ -76,8 +76,7 @@ RankEnergy bySingularValues(const RandomMap& map, int side, int stride, int larg
 }
 
 /// Adds the map in bands of `band_rows` rows.
-std::vector<RankEnergy> energiesOf(const RandomMap& map, std::vector<int> sides, int band_rows, int stride = 1) {
-  BlockRankEnergy blocks(std::move(sides), map.width, map.height, map.channels, map.expressions, stride);
+void addMap(BlockRankEnergy& blocks, const RandomMap& map, int band_rows) {
   for (int begin = 0; begin < map.height; begin += band_rows) {
     const int rows = std::min(band_rows, map.height - begin);
     const compress::BandShape shape{map.width, rows, map.channels, map.expressions, image::SampleType::kFloat32};
@@ -99,7 +98,25 @@ std::vector<RankEnergy> energiesOf(const RandomMap& map, std::vector<int> sides,
     }
     blocks.addBand(begin, bytes, shape, texels);
   }
+}
+
+std::vector<RankEnergy> energiesOf(const RandomMap& map, std::vector<int> sides, int band_rows, int stride = 1) {
+  BlockRankEnergy blocks(std::move(sides), map.width, map.height, map.channels, map.expressions, stride);
+  addMap(blocks, map, band_rows);
   return blocks.energies();
+}
+
+/// Some channels of a map, as a map.
+RandomMap channelsOf(const RandomMap& map, int first, int count) {
+  RandomMap some{map.width, map.height, count, map.expressions, {}};
+  for (int image = 0; image <= map.expressions; ++image) {
+    for (int y = 0; y < map.height; ++y) {
+      for (int x = 0; x < map.width; ++x) {
+        for (int c = first; c < first + count; ++c) some.samples.push_back(map.at(image, x, y, c));
+      }
+    }
+  }
+  return some;
 }
 
 void expectSame(const RankEnergy& got, const RankEnergy& expected) {
@@ -129,6 +146,33 @@ TEST(BlockRankEnergies, OfSeveralSizesComeFromOnePass) {
   for (std::size_t i = 0; i < sides.size(); ++i) expectSame(energies[i], bySingularValues(map, sides[i], 1, 32));
   for (std::size_t i = 1; i < sides.size(); ++i) {
     EXPECT_GE(energies[i].residual[2], energies[i - 1].residual[2]) << "smaller blocks fit better";
+  }
+}
+
+/// Maps that share weights are one map with all their channels; a map that counts four times is one of twice the
+/// values.
+TEST(BlockRankEnergies, OfMapsThatShareWeightsAreThoseOfAllTheirChannels) {
+  const RandomMap whole = randomMap(45, 50, 3, 9, 9);
+  RandomMap first = channelsOf(whole, 0, 1), rest = channelsOf(whole, 1, 2);
+  for (float& value : rest.samples) value *= 0.5f;
+  const std::vector<int> sides = {4, 8, 16};
+  const auto blocksOf = [&sides](const RandomMap& map) {
+    return BlockRankEnergy(sides, map.width, map.height, map.channels, map.expressions, 3);
+  };
+  BlockRankEnergy of_first = blocksOf(first), of_rest = blocksOf(rest);
+  compress::SharedGrams grams(of_first.smallestBlocks(), 9);
+  of_first.shareWith(grams, 1.0);
+  of_rest.shareWith(grams, 4.0);
+  addMap(of_first, first, 16);
+  addMap(of_rest, rest, 16);
+  const std::vector<RankEnergy> shared = of_first.energiesOf(grams);
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const RankEnergy expected = bySingularValues(whole, sides[i], 3, 16);
+    const RankEnergy alone = of_first.energies()[i], other = of_rest.energies()[i];
+    for (std::size_t c = 0; c <= 8; ++c) {
+      EXPECT_NEAR(shared[i].residual[c], expected.residual[c], 1e-5 * expected.residual[0]) << sides[i] << ' ' << c;
+    }
+    EXPECT_GT(shared[i].residual[2], (alone.residual[2] + 4.0 * other.residual[2]));
   }
 }
 

@@ -9,8 +9,10 @@
 #include "facezip/blend.hpp"
 #include "facezip/compress.hpp"
 #include "facezip/package.hpp"
+#include "facezip/rig.hpp"
 #include "raster/cell_samples.hpp"
 #include "reference/compress_stretch.hpp"
+#include "rig/shape_codes.hpp"
 #include "rig_capture.hpp"
 #include "temporary_directory.hpp"
 #include "test_device.hpp"
@@ -66,14 +68,14 @@ TEST(Influences, SumToOneAndFollowTheReferenceInEveryCell) {
   const Eigen::MatrixXd influences = vertexInfluences(mesh, expressions);
   const std::vector<int> region = geometry::wholeMeshRegion(mesh);
   const raster::UvRaster raster(mesh, region, 40, 40, 16);
-  const EncodedWeights encoded = normalisedInfluences(mesh, influences, raster, 8);
+  const EncodedWeights encoded = encodeShares(normalisedInfluences(mesh, influences, raster, 8));
   ASSERT_EQ(encoded.codes.size(), 3u * 25 * 2);
   const auto samples = raster::cellSamples(raster, 8);
   for (std::size_t cell = 0; cell < 25; ++cell) {
     for (std::size_t i = 0; i < 2; ++i) {
       int sum = 0;
       for (std::size_t n = 0; n < 3; ++n) sum += encoded.codes[(n * 25 + cell) * 2 + i];
-      EXPECT_NEAR(sum, 255, 2);
+      EXPECT_NEAR(sum * encoded.scale[i], 1.0, 1e-12);
       if (samples[cell].triangle < 0) continue;
       std::vector<double> here;
       for (Eigen::Index n = 0; n < 3; ++n) {
@@ -88,7 +90,52 @@ TEST(Influences, SumToOneAndFollowTheReferenceInEveryCell) {
       }
       const std::vector<double> expected = reference::normalised(here, 1.0);
       for (std::size_t n = 0; n < 3; ++n) {
-        EXPECT_NEAR(encoded.codes[(n * 25 + cell) * 2 + i] / 255.0, expected[n], 0.5 / 255 + 1e-9);
+        EXPECT_NEAR(encoded.codes[(n * 25 + cell) * 2 + i] * encoded.scale[i], expected[n], encoded.scale[i] + 1e-6);
+      }
+    }
+  }
+}
+
+/// Where nothing moves all shares are 1/N: rounded one by one to 255 steps, a hundred of them would sum to 1.18.
+TEST(Influences, KeepTheirSumsWhateverTheNumberOfExpressions) {
+  const geometry::TriangleMesh mesh = test::gridMesh(9);
+  const std::vector<int> region = geometry::wholeMeshRegion(mesh);
+  const raster::UvRaster raster(mesh, region, 64, 64, 16);
+  for (const int expressions : {1, 3, 45, 100, 300}) {
+    for (const bool still : {true, false}) {
+      Eigen::MatrixXd influences = Eigen::MatrixXd::Zero(mesh.positions.rows(), 2 * expressions);
+      for (Eigen::Index v = 0; v < influences.rows() && !still; ++v) {
+        for (Eigen::Index c = 0; c < influences.cols(); ++c) {
+          influences(v, c) = std::max(0.0, 4 * std::sin(0.7 * static_cast<double>(v) + 1.3 * static_cast<double>(c)));
+        }
+      }
+      const InfluenceShares shares = normalisedInfluences(mesh, influences, raster, 8);
+      const EncodedWeights encoded = encodeShares(shares);
+      const auto count = static_cast<std::size_t>(expressions);
+      for (std::size_t i = 0; i < 2; ++i) {
+        std::vector<double> mean(count, 0.0);
+        // Eq. 13 of expressions that all look alike, and of textures that do not, in double.
+        double largest = 0.0, off = 0.0, expected_map = 0.0;
+        for (std::size_t cell = 0; cell < 64; ++cell) {
+          double sum = 0.0, map = 0.0, expected = 0.0;
+          for (std::size_t n = 0; n < count; ++n) {
+            const double share = encoded.codes[(n * 64 + cell) * 2 + i] * encoded.scale[i];
+            const double wanted = static_cast<double>(shares.shares[(cell * 2 + i) * count + n]);
+            const double texture = 20.0 + 10.0 * std::sin(2.1 * static_cast<double>(n));
+            EXPECT_LT(std::abs(share - wanted), encoded.scale[i]);
+            mean[n] += (share - wanted) / 64;
+            sum += share;
+            map += share * texture;
+            expected += wanted * texture;
+          }
+          EXPECT_NEAR(sum, 1.0, 1e-12);
+          off += (map - expected) / 64;
+          expected_map += expected / 64;
+          largest = std::max(largest, std::abs(map - expected));
+        }
+        EXPECT_NEAR(off, 0.0, 0.004 * expected_map) << expressions;
+        EXPECT_LT(largest, 0.05 * expected_map) << expressions;
+        for (const double error : mean) EXPECT_LT(std::abs(error), 0.25 * encoded.scale[i]) << "none is favoured";
       }
     }
   }
@@ -116,6 +163,55 @@ TEST(CompressStretchMethod, MakesAPackageThatBlendsLikeAnyOther) {
   blender.blend(0, frame);
   const std::size_t texel = (42 * 64 + 21) * 3;
   EXPECT_GT(std::to_integer<int>(frame[texel]), std::to_integer<int>(neutral[texel]) + 10);
+}
+
+/// The shapes of a rig blend the two maps by their own strain (Eq. 14), and their shares are a whole as well.
+TEST(CompressStretchMethod, ShapesOfARigBlendByTheirOwnStrain) {
+  const test::TemporaryDirectory folder;
+  test::writeRigCapture(folder.path());
+  RigOptions options;
+  options.compress.method = Method::kCompressStretch;
+  options.compress.unit = "m";
+  options.compress.mask_radius = geometry::parseLength("5cm");
+  options.fit.iterations = 2;
+  Progress progress;
+  const Capture capture = openCapture(folder / "capture");
+  compressCapture(capture, folder / "plain", options.compress, test::testDevice(), progress);
+  const RigReport report =
+      rigCapture(capture, folder / "template", folder / "rig", options, test::testDevice(), progress);
+  EXPECT_EQ(report.texture_solve, "strain");
+  const Package package = Package::open(folder / "rig");
+  ASSERT_THAT(package.expressions(), testing::ElementsAre("r0", "r1", "r2", "r3", "bumpA", "bumpB", "bumpC"));
+  const Eigen::MatrixXf decoded = rig::decodeSet(package, 0);
+  EXPECT_LT((decoded.leftCols(4).rowwise().sum().array() - 1.0f).abs().maxCoeff(), 1e-5f);
+  EXPECT_LT((decoded.rightCols(3).rowwise().sum().array() - 1.0f).abs().maxCoeff(), 1e-5f);
+  // Eq. 10 to 12 of the rig's own meshes.
+  const geometry::TriangleMesh neutral = geometry::readObj(folder / "rig/shapes/neutral.obj");
+  std::vector<Eigen::MatrixX3d> shapes;
+  for (const char* name : test::kRigShapes) {
+    shapes.push_back(geometry::readObj(folder / "rig/shapes" / (std::string(name) + ".obj")).positions);
+  }
+  const std::vector<int> region = geometry::wholeMeshRegion(neutral);
+  const raster::UvRaster raster(neutral, region, 64, 64, 16);
+  const InfluenceShares expected = normalisedInfluences(neutral, vertexInfluences(neutral, shapes), raster, 8);
+  const float step = static_cast<float>(package.weightSets()[0].scale[0]);
+  for (Eigen::Index row = 0; row < decoded.rows(); ++row) {
+    for (Eigen::Index m = 0; m < 3; ++m) {
+      EXPECT_NEAR(decoded(row, 4 + m), expected.shares[static_cast<std::size_t>(row * 3 + m)], step + 1e-3f);
+    }
+  }
+  const Package plain = Package::open(folder / "plain");
+  const float both_steps = step + static_cast<float>(plain.weightSets()[0].scale[0]);
+  EXPECT_LT((decoded.leftCols(4) - rig::decodeSet(plain, 0)).cwiseAbs().maxCoeff(), both_steps);
+
+  options.texture_solve = TextureSolve::kLocal;
+  EXPECT_THROW(rigCapture(capture, folder / "template", folder / "other", options, test::testDevice(), progress),
+               InputError);
+  options.compress.method = Method::kRefined;
+  options.texture_solve = TextureSolve::kStrain;
+  EXPECT_THROW(rigCapture(capture, folder / "template", folder / "other", options, test::testDevice(), progress),
+               InputError);
+  EXPECT_FALSE(std::filesystem::exists(folder / "other"));
 }
 
 TEST(CompressStretchMethod, NeedsEveryMesh) {

@@ -52,6 +52,19 @@ TEST(Compress, ReproducesExpressionsThatRepeatFour) {
   EXPECT_LT(roundTrip(folder.path()).maps[0].rmse.at("package").pooled, 0.5);
 }
 
+TEST(Compress, NotesFilesOfOneMapThatSayOtherThingsOfTheirColours) {
+  const test::TemporaryDirectory folder;
+  test::writeSmallCapture(folder / "c", {.expressions = 3});
+  const fs::path file = folder / "c/albedo/e01.png";
+  image::writeImage(file, image::readImage(file), "linear");
+  struct : Progress {
+    void note(std::string_view message) override { text += message; }
+    std::string text;
+  } progress;
+  compressCapture(openCapture(folder / "c"), folder / "p", smallOptions(), testDevice(), progress);
+  EXPECT_THAT(progress.text, testing::HasSubstr("e01.png says linear"));
+}
+
 TEST(Compress, IsBetterThanStoringNothingAndThanNoPermutation) {
   const test::TemporaryDirectory folder;
   test::writeSmallCapture(folder / "c", {.expressions = 12});

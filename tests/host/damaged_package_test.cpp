@@ -186,10 +186,10 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Corruption{"format", [](json& j) { j["format"] = "zip"; }, "format: expected \"facezip-package\""},
         Corruption{"no_format", [](json& j) { j.erase("format"); }, "format: got no such field"},
-        Corruption{"newer", [](json& j) { j["version"] = 3; },
-                   "version: expected 2, the version that this facezip reads, got 3; update facezip"},
+        Corruption{"newer", [](json& j) { j["version"] = 4; },
+                   "version: expected 2 or 3, the versions that this facezip reads, got 4; update facezip"},
         Corruption{"older", [](json& j) { j["version"] = 1; },
-                   "version: expected 2, the version that this facezip reads, got 1; write the package again"},
+                   "version: expected 2 or 3, the versions that this facezip reads, got 1; write the package again"},
         Corruption{"version_text", [](json& j) { j["version"] = "2"; }, "version: expected an integer"},
         Corruption{"version_real", [](json& j) { j["version"] = 2.0; }, "version: expected an integer"},
         Corruption{"array", [](json& j) { j = json::array(); }, "expected an object, got an array"},

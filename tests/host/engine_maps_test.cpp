@@ -44,6 +44,46 @@ TEST(EngineMaps, HaveRolesAndNamesThatShadersTake) {
   EXPECT_EQ(maps[3].role, MapRole::kRoughness);
 }
 
+TEST(MapRoles, NamesOfTheTradeAreKnown) {
+  const std::pair<const char*, MapRole> kNames[] = {{"albedo", MapRole::kAlbedo},
+                                                    {"BaseColor", MapRole::kAlbedo},
+                                                    {"T_Face_base_colour", MapRole::kAlbedo},
+                                                    {"Diffuse", MapRole::kAlbedo},
+                                                    {"faceAlbedomap2", MapRole::kAlbedo},
+                                                    {"Color", MapRole::kAlbedo},
+                                                    {"AO", MapRole::kOcclusion},
+                                                    {"AOMap", MapRole::kOcclusion},
+                                                    {"Ambient Occlusion", MapRole::kOcclusion},
+                                                    {"Normal_OpenGL", MapRole::kNormal},
+                                                    {"diffuse_normal", MapRole::kNormal},
+                                                    {"Face-NRM", MapRole::kNormal},
+                                                    {"Roughness", MapRole::kRoughness},
+                                                    {"SkinRough", MapRole::kRoughness},
+                                                    {"Normal_DirectX", MapRole::kOther},
+                                                    {"NormalDX", MapRole::kOther},
+                                                    {"specular_albedo", MapRole::kOther},
+                                                    {"chaos", MapRole::kOther},
+                                                    {"protocol", MapRole::kOther},
+                                                    {"displacement", MapRole::kOther},
+                                                    {"", MapRole::kOther}};
+  for (const auto& [name, role] : kNames) EXPECT_EQ(exporting::roleOf(name), role) << name;
+}
+
+TEST(MapRoles, WhatNoMaterialShowsIsSaid) {
+  const auto named = [](const std::vector<std::string>& names) {
+    std::vector<PackageMap> maps;
+    for (const std::string& name : names) maps.emplace_back().name = name;
+    return maps;
+  };
+  const std::vector<MapRole> traced = {MapRole::kAlbedo, MapRole::kNormal};
+  EXPECT_THAT(exporting::notesOfRoles(named({"BaseColor", "Normal_OpenGL"}), traced), testing::IsEmpty());
+  EXPECT_THAT(exporting::notesOfRoles(named({"albedo", "diffuse", "gloss", "AO"}), traced),
+              testing::ElementsAre(HasSubstr("diffuse: not in the material, where albedo is the albedo"),
+                                   HasSubstr("gloss: not in the material"), HasSubstr("AO: not in the material")));
+  EXPECT_THAT(exporting::notesOfRoles(named({"skin"}), traced),
+              testing::ElementsAre(HasSubstr("skin: not in"), HasSubstr("the face is gray")));
+}
+
 TEST(EngineMaps, TexturesOfEightBitsDecodeToTheDifferences) {
   const test::TemporaryDirectory folder;
   const Package package = awkwardPackage(folder / "package", 5);

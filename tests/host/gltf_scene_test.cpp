@@ -4,9 +4,13 @@
 #include <gtest/gtest.h>
 #include <tiny_gltf.h>
 
+#include <algorithm>
 #include <fstream>
 
+#include "export/gltf_buffer.hpp"
+#include "export/gltf_tangents.hpp"
 #include "facezip/error.hpp"
+#include "small_capture.hpp"
 #include "temporary_directory.hpp"
 
 namespace facezip {
@@ -94,6 +98,74 @@ TEST(WriteGltf, GivesBackMeshTargetsAndExtras) {
     EXPECT_EQ(model.meshes[0].extras.Get("targetNames").Get(1).Get<std::string>(), "still");
     EXPECT_EQ(model.images.at(0).uri, "albedo/neutral.png");
     EXPECT_EQ(model.materials.at(0).extras.Get("facezip").Get("scale").GetNumberAsDouble(), 0.5);
+  }
+}
+
+/// Far from the origin, floats of metres would be off by 4 mm: a vertex and its neighbours would be one.
+TEST(WriteGltf, RecentresWhatFloatsWouldRoundOff) {
+  const test::TemporaryDirectory directory;
+  GltfScene near = squareScene(), far = near;
+  const Eigen::RowVector3d place(300.0, 4'500'000.0, -70.0);
+  EXPECT_TRUE(exporting::recentre(near).isZero(0.0));
+  far.neutral.positions.rowwise() += place;
+  for (exporting::MorphTarget& target : far.targets) target.positions.rowwise() += place;
+  const Eigen::RowVector3d origin = exporting::recentre(far);
+  EXPECT_LT((origin - place).norm(), 100.0);
+  exporting::writeGltf(directory.path() / "near.glb", near);
+  exporting::writeGltf(directory.path() / "far.glb", far);
+  const tinygltf::Model expected = load(directory.path() / "near.glb"), found = load(directory.path() / "far.glb");
+  const auto floats = [](const tinygltf::Model& model, const std::map<std::string, int>& attributes) {
+    return exporting::readFloats(model, attributes.at("POSITION"));
+  };
+  const std::vector<float> at_rest = floats(expected, expected.meshes[0].primitives[0].attributes);
+  const std::vector<float> moved = floats(found, found.meshes[0].primitives[0].attributes);
+  ASSERT_EQ(moved.size(), at_rest.size());
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    const auto axis = static_cast<Eigen::Index>(i % 3);
+    EXPECT_NEAR(moved[i], at_rest[i] + 0.01 * (place[axis] - origin[axis]), 1e-6);
+    EXPECT_NEAR(found.meshes[0].extras.Get("origin").Get(i % 3).GetNumberAsDouble(), 0.01 * origin[axis], 1e-9);
+  }
+  EXPECT_EQ(floats(found, found.meshes[0].primitives[0].targets[0]),
+            floats(expected, expected.meshes[0].primitives[0].targets[0]));
+  EXPECT_FALSE(expected.meshes[0].extras.Has("origin"));
+}
+
+/// Tangents run along u, are orthogonal to normals of unit length, and follow the morph targets.
+TEST(AddTangents, FollowUvsAndTargets) {
+  const test::TemporaryDirectory directory;
+  for (const bool mirrored : {false, true}) {
+    GltfScene scene = squareScene();
+    // A sheet bent around y, whose u runs along the bend.
+    scene.neutral = test::gridMesh(9);
+    if (mirrored) scene.neutral.uvs.col(0) = 1.0 - scene.neutral.uvs.col(0).array();
+    Eigen::MatrixX3d bent = scene.neutral.positions;
+    bent.col(2).array() += 2.0 * bent.col(0).array().square();
+    scene.targets = {{"bent", bent}, {"still", scene.neutral.positions}};
+    scene.base_colour_texture.clear();
+    scene.metres_per_unit = 1.0;
+    exporting::writeGltf(directory.path() / "a.glb", scene);
+    tinygltf::Model model = load(directory.path() / "a.glb");
+    EXPECT_FALSE(model.meshes[0].primitives[0].attributes.contains("TANGENT"));
+    exporting::addTangents(model);
+    const tinygltf::Primitive& primitive = model.meshes[0].primitives[0];
+    const std::vector<float> normals = exporting::readFloats(model, primitive.attributes.at("NORMAL"));
+    const std::vector<float> tangents = exporting::readFloats(model, primitive.attributes.at("TANGENT"));
+    const std::vector<float> turned = exporting::readFloats(model, primitive.targets[0].at("NORMAL"));
+    const std::vector<float> changes = exporting::readFloats(model, primitive.targets[0].at("TANGENT"));
+    const std::vector<float> none = exporting::readFloats(model, primitive.targets[1].at("TANGENT"));
+    EXPECT_EQ(std::ranges::count(none, 0.0f), static_cast<std::ptrdiff_t>(none.size()));
+    ASSERT_EQ(tangents.size(), 4u * 81);
+    for (std::size_t v = 0; v < 81; ++v) {
+      const Eigen::Vector3f n(normals[3 * v], normals[3 * v + 1], normals[3 * v + 2]);
+      const Eigen::Vector3f t(tangents[4 * v], tangents[4 * v + 1], tangents[4 * v + 2]);
+      const Eigen::Vector3f n2 = n + Eigen::Vector3f(turned[3 * v], turned[3 * v + 1], turned[3 * v + 2]);
+      const Eigen::Vector3f t2 = t + Eigen::Vector3f(changes[3 * v], changes[3 * v + 1], changes[3 * v + 2]);
+      EXPECT_NEAR(t.norm(), 1.0f, 1e-6f);
+      EXPECT_NEAR(t.dot(n), 0.0f, 1e-6f);
+      EXPECT_NEAR(t2.dot(n2), 0.0f, 1e-5f) << "follows the target's normal";
+      EXPECT_GT(mirrored ? -t[0] : t[0], 0.9f) << "along u";
+      EXPECT_EQ(tangents[4 * v + 3], mirrored ? -1.0f : 1.0f) << "bitangent n x t w runs up in the texture";
+    }
   }
 }
 

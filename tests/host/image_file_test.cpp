@@ -1,6 +1,7 @@
 #include "image/image_file.hpp"
 
 #include <OpenImageIO/imageio.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -203,6 +204,128 @@ TEST(ImageReader, InksAreRefused) {
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("CMYK"), std::string::npos) << error.what();
   }
+}
+
+// ---- files whose samples are not what they seem
+
+void writeTagged(const std::filesystem::path& file, int orientation, int images = 1) {
+  OIIO::ImageSpec spec(4, 2, 3, OIIO::TypeDesc::UINT8);
+  spec.attribute("Orientation", orientation);
+  const std::vector<unsigned char> samples(24, 100);
+  const auto out = OIIO::ImageOutput::create(file.string());
+  const std::vector<OIIO::ImageSpec> specs(static_cast<std::size_t>(images), spec);  // EXR wants to know all
+  const bool parts = images > 1 && file.extension() == ".exr";
+  for (int i = 0; i < images; ++i) {
+    if (i == 0 && parts) {
+      ASSERT_TRUE(out && out->open(file.string(), images, specs.data()));
+      ASSERT_TRUE(out->write_image(OIIO::TypeDesc::UINT8, samples.data()));
+      continue;
+    }
+    ASSERT_TRUE(out &&
+                out->open(file.string(), spec, i == 0 ? OIIO::ImageOutput::Create : OIIO::ImageOutput::AppendSubimage));
+    ASSERT_TRUE(out->write_image(OIIO::TypeDesc::UINT8, samples.data()));
+  }
+  ASSERT_TRUE(out->close());
+}
+
+/// A PNG file with an EXIF block, before its samples or behind them.
+void writePngWithExif(const std::filesystem::path& file, char orientation, bool behind) {
+  image::writeImage(file, ramp(4, 2, 1, image::SampleType::kUint8));
+  std::string png = test::contentsOf(file);
+  std::string chunk = "eXIf";
+  chunk += std::string("II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0", 18) + orientation + std::string(7, '\0');
+  const auto bigEndian = [](std::size_t value) {
+    std::string bytes;
+    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift & 0xff);
+    return bytes;
+  };
+  png.insert(png.find(behind ? "IEND" : "IDAT") - 4,
+             bigEndian(chunk.size() - 4) + chunk + std::string(4, '\0'));  // its check is nobody's
+  std::ofstream(file, std::ios::binary) << png;
+}
+
+template <typename Open>
+std::string refusalOf(const Open& open) {
+  try {
+    open();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ImageReader, OrientationTagsAreRefused) {
+  const test::TemporaryDirectory folder;
+  const auto refusal = [&](const std::string& name) {
+    return refusalOf([&] { image::ImageReader reader(folder / name); });
+  };
+  for (const char* name : {"a.tif", "a.jpg", "a.exr"}) {
+    writeTagged(folder / name, 1);
+    EXPECT_EQ(refusal(name), "") << name;
+    writeTagged(folder / name, 3);
+    EXPECT_THAT(refusal(name), testing::HasSubstr("orientation tag: expected 1")) << name;
+    EXPECT_THAT(refusal(name), testing::HasSubstr("turned by 180 degrees")) << name;
+  }
+  for (const bool behind : {false, true}) {
+    writePngWithExif(folder / "a.png", 1, behind);
+    EXPECT_EQ(refusal("a.png"), "");
+    writePngWithExif(folder / "a.png", 6, behind);
+    EXPECT_THAT(refusal("a.png"), testing::HasSubstr("90 degrees clockwise")) << behind;
+  }
+}
+
+TEST(ImageReader, SeveralImagesInAFileAreRefused) {
+  const test::TemporaryDirectory folder;
+  for (const char* name : {"a.tif", "a.exr"}) {
+    writeTagged(folder / name, 1, 2);
+    EXPECT_THAT(refusalOf([&] { image::ImageReader reader(folder / name); }), testing::HasSubstr("expected one image"))
+        << name;
+  }
+}
+
+TEST(ImageReader, ChannelsBesideTheColoursAreRefused) {
+  const test::TemporaryDirectory folder;
+  const auto refusal = [&](const std::vector<std::string>& names) {
+    OIIO::ImageSpec spec(4, 2, static_cast<int>(names.size()), OIIO::TypeDesc::HALF);
+    spec.channelnames = names;
+    const std::vector<float> samples(8 * names.size(), 0.5f);
+    const auto out = OIIO::ImageOutput::create("a.exr");
+    EXPECT_TRUE(out->open((folder / "a.exr").string(), spec));
+    EXPECT_TRUE(out->write_image(OIIO::TypeDesc::FLOAT, samples.data()) && out->close());
+    return refusalOf([&] { image::ImageReader reader(folder / "a.exr"); });
+  };
+  for (const auto& names : std::vector<std::vector<std::string>>{{"R", "G", "B"},
+                                                                 {"R", "G", "B", "A"},
+                                                                 {"Y"},
+                                                                 {"Z"},
+                                                                 {"N.X", "N.Y", "N.Z"},
+                                                                 {"diffuse.R", "diffuse.G", "diffuse.B"}}) {
+    EXPECT_EQ(refusal(names), "") << names.back();
+  }
+  EXPECT_THAT(refusal({"R", "G", "B", "Z"}), testing::HasSubstr("R, G, B, Z"));
+  EXPECT_NE(refusal({"R", "G", "B", "id"}), "");
+  EXPECT_NE(refusal({"Y", "Z"}), "");
+}
+
+TEST(ImageReader, SaysWhatFilesSayOfTheirColours) {
+  const test::TemporaryDirectory folder;
+  for (const char* colours : {"", "sRGB", "linear"}) {
+    image::writeImage(folder / "a.png", ramp(4, 2, 3, image::SampleType::kUint8), colours);
+    EXPECT_EQ(image::ImageReader(folder / "a.png").colours(), colours);
+  }
+  OIIO::ImageSpec spec(4, 2, 3, OIIO::TypeDesc::UINT8);
+  const std::vector<unsigned char> samples(24, 100);
+  std::vector<std::string> said;
+  for (const unsigned char content : {1, 2}) {
+    const std::vector<unsigned char> profile(200, content);
+    spec.attribute("ICCProfile", OIIO::TypeDesc(OIIO::TypeDesc::UINT8, 200), profile.data());
+    const auto out = OIIO::ImageOutput::create("a.tif");
+    ASSERT_TRUE(out->open((folder / "a.tif").string(), spec));
+    ASSERT_TRUE(out->write_image(OIIO::TypeDesc::UINT8, samples.data()) && out->close());
+    said.push_back(image::ImageReader(folder / "a.tif").colours());
+    EXPECT_THAT(said.back(), testing::HasSubstr("ICC profile"));
+  }
+  EXPECT_NE(said[0], said[1]);
 }
 
 TEST(ImageReader, NoByteOfAPngIsDamagedUnnoticed) {

@@ -52,11 +52,13 @@ TEST_P(MippedTextureWriterTest, LevelsAreMeansOfWhatTheBlocksDecodeTo) {
   const std::vector<float> half = level(1);
   for (int y = 0; y < kHeight / 2; ++y) {
     for (int x = 0; x < kWidth / 2; ++x) {
-      const auto at = [&](int i, int j) { return whole[static_cast<std::size_t>(((2 * y + j) * kWidth + 2 * x + i) * 3)]; };
+      const auto at = [&](int i, int j) {
+        return whole[static_cast<std::size_t>(((2 * y + j) * kWidth + 2 * x + i) * 3)];
+      };
       const float mean = (at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1)) / 4.0f;
-      // The last of an odd number of rows has a share, too; what a smooth picture loses in blocks is small, most of it
-      // to BC1's ends of 5 bits.
-      EXPECT_NEAR(half[static_cast<std::size_t>((y * (kWidth / 2) + x) * 3)], mean, 10.0f) << x << " " << y;
+      // The last of an odd number of rows has a share, too; what a smooth picture loses in blocks is small, but for BC1,
+      // whose ends of 5 bits do not follow three channels apart.
+      EXPECT_NEAR(half[static_cast<std::size_t>((y * (kWidth / 2) + x) * 3)], mean, GetParam() == BlockFormat::kBc1 ? 20.0f : 6.0f) << x << " " << y;
     }
   }
 }

@@ -76,6 +76,19 @@ TEST(RateCurve, PoolsMapsByWeightAndSize) {
   EXPECT_EQ(pooled(a, b).rmse, 0.0);
 }
 
+TEST(RateCurve, MapsThatShareWeightsLeaveWhatIsLeftOfBoth) {
+  RateMap map{100, 1, 1.0, 100.0, 4.0, {{1.0, 0.0, 0, 0, 0, 0, 0, 0, 0}}};
+  RateMap other = map;
+  other.metric_weight = 3.0;
+  const std::vector<RateMap> maps = {map, other};
+  const std::vector<int> scales = {8};
+  const std::vector<std::uint64_t> cells = {10};
+  const std::vector<std::vector<double>> left = {{1.0, 0.25, 0, 0, 0, 0, 0, 0, 0}};
+  EXPECT_NEAR(compress::rateCurve(maps, scales, cells, 1)[0].rmse, std::sqrt(4.0 * compress::kRounding), 1e-9);
+  EXPECT_NEAR(compress::rateCurve(maps, scales, cells, 1, left)[0].rmse, std::sqrt(4.0 * (0.25 + compress::kRounding)),
+              1e-9);
+}
+
 TEST(RateCurve, PreciseMapsHaveCodesOf16BitsToo) {
   RateMap map = evenMap(1);
   map.sample_bytes = 2;
@@ -269,6 +282,28 @@ TEST_F(Choosing, MapsOfOtherSizesAndSetsOfWeightsCountTheirBytes) {
     const auto side = static_cast<std::uint64_t>((64 + report.weight_scale - 1) / report.weight_scale);
     EXPECT_EQ(report.rate->bytes, (64u * 64 + 32 * 32) * 3 * (1 + c) + side * side * 8 * c * (per_map ? 2 : 1));
   }
+}
+
+/// Two maps of two textures each, which follow the expressions in ways of their own: two textures are enough for
+/// either, and far from enough for weights that serve both.
+TEST_F(Choosing, ErrorsOfMapsThatShareWeightsAreExpectedOfThemTogether) {
+  const auto mixed = [](int phase) {
+    return [phase](int x, int y, int c, int n) {
+      return 25.0 * std::sin(0.5 * x + c) * std::sin(1.3 * n + phase) +
+             25.0 * std::sin(0.6 * y + phase) * std::cos(2.1 * n * (phase + 1));
+    };
+  };
+  writeCapture(folder_ / "c", {"one", 12, 64, 64, image::SampleType::kUint8, mixed(0)}, "albedo");
+  writeCapture(folder_ / "c", {"other", 12, 64, 64, image::SampleType::kUint8, mixed(1)}, "normal");
+  CompressOptions wanted = budget(95000);
+  const CompressReport report = run(wanted);
+  ASSERT_TRUE(report.pooled_rmse);
+  EXPECT_NEAR(*report.pooled_rmse, pooledRmse(), 1e-3);
+  EXPECT_GT(report.rate->rmse, 3.0);
+  EXPECT_NEAR(report.rate->rmse, *report.pooled_rmse, 0.2 * *report.pooled_rmse);
+  wanted.weights_per_map = true;
+  const CompressReport alone = run(wanted);
+  EXPECT_LT(alone.rate->rmse, 0.5 * report.rate->rmse);
 }
 
 // Codes of 16 bits double the difference textures: they are taken only where the budget holds them.

@@ -15,6 +15,7 @@
 #include "facezip/package.hpp"
 #include "file_contents.hpp"
 #include "io/staged_directory.hpp"
+#include "rig/shape_codes.hpp"
 #include "rig/texture_solve.hpp"
 #include "rig/weight_guess.hpp"
 #include "rig_capture.hpp"
@@ -254,8 +255,13 @@ TEST_F(RigTest, ShapesThatNothingDeterminesDoNotHarmWhatWasCaptured) {
   fs::copy(folder() / "capture", folder() / "alike", fs::copy_options::recursive);
   geometry::TriangleMesh mesh = geometry::readObj(folder() / "capture/neutral.obj");
   const Eigen::MatrixX3d neutral = mesh.positions;
-  for (const auto& [name, weight] : {std::pair("r0", 0.6), std::pair("r1", 0.6002)}) {
-    mesh.positions = neutral + weight * test::rigShape(test::kRigSide, 0, 0.03);
+  for (const char* other : {"r2", "r3"}) {
+    fs::remove(folder() / "alike/expressions" / (std::string(other) + ".obj"));
+    fs::remove(folder() / "alike/albedo" / (std::string(other) + ".png"));
+  }
+  for (const auto& [name, weight] : {std::pair("r0", 0.0), std::pair("r1", 0.03)}) {
+    mesh.positions =
+        neutral + 0.6 * test::rigShape(test::kRigSide, 0, 0.03) + weight * test::rigShape(test::kRigSide, 1, 0.03);
     geometry::writeObj(folder() / "alike/expressions" / (std::string(name) + ".obj"), mesh);
   }
   RigOptions options = quickOptions();
@@ -272,6 +278,48 @@ TEST_F(RigTest, ShapesThatNothingDeterminesDoNotHarmWhatWasCaptured) {
   const Evaluation evaluation =
       evaluatePackage(capture, Package::open(folder() / "alike.facezip"), evaluate, test::testDevice(), progress);
   EXPECT_NEAR(evaluation.maps[0].rmse.at("package").pooled, report.compress.rmse.front().second, 0.05);
+}
+
+/// FaceZip, section 3.2, without further options: W* = B+ W (Eq. 11) is stored whole, and adds up to W (Eq. 10).
+TEST_F(RigTest, ThePapersMethodStoresWhatTheEquationsSay) {
+  RigOptions options = quickOptions();
+  options.compress.method = Method::kPaper;
+  options.fit.iterations = 0;
+  Progress progress;
+  fs::copy(folder() / "capture", folder() / "three", fs::copy_options::recursive);
+  fs::remove(folder() / "three/expressions/r2.obj");
+  fs::remove(folder() / "three/albedo/r2.png");
+  // Nearly alike, so that shapes must go beyond what was captured.
+  geometry::TriangleMesh mesh = geometry::readObj(folder() / "capture/neutral.obj");
+  mesh.positions += 0.7 * test::rigShape(test::kRigSide, 1, 0.03) + 0.5 * test::rigShape(test::kRigSide, 2, 0.03);
+  geometry::writeObj(folder() / "three/expressions/r1.obj", mesh);
+  const Capture capture = openCapture(folder() / "three");
+  const RigReport report =
+      rigCapture(capture, folder() / "template", folder() / "three.facezip", options, test::testDevice(), progress);
+  compressCapture(capture, folder() / "plain.facezip", options.compress, test::testDevice(), progress);
+  EXPECT_EQ(report.texture_solve, "pseudo-inverse");
+  ASSERT_EQ(report.texture_rank, 3);
+
+  Eigen::MatrixXd b(3, 3);
+  for (Eigen::Index n = 0; n < 3; ++n) {
+    for (Eigen::Index m = 0; m < 3; ++m)
+      b(n, m) = report.weights[static_cast<std::size_t>(n)][static_cast<std::size_t>(m)];
+  }
+  const Package package = Package::open(folder() / "three.facezip");
+  const Eigen::MatrixXd captured = rig::decodeSet(Package::open(folder() / "plain.facezip"), 0).cast<double>();
+  const Eigen::MatrixXd decoded = rig::decodeSet(package, 0).cast<double>();
+  const Eigen::MatrixXd shapes = decoded.rightCols(3);
+  const Eigen::MatrixXd expected = captured * b.inverse().transpose();
+  EXPECT_GT(expected.maxCoeff(), 1.55) << "more than twice the captured range, or the test tests nothing";
+  const auto channels = static_cast<Eigen::Index>(package.differences());
+  for (Eigen::Index row = 0; row < decoded.rows(); ++row) {
+    const double half_step = 0.5 * package.weightSets()[0].scale[static_cast<std::size_t>(row % channels)] + 1e-5;
+    EXPECT_LT((shapes.row(row) - expected.row(row)).cwiseAbs().maxCoeff(), half_step);
+    const Eigen::RowVectorXd reproduced = shapes.row(row) * b.transpose();
+    for (Eigen::Index n = 0; n < 3; ++n) {
+      EXPECT_NEAR(reproduced[n], captured(row, n), half_step * b.row(n).sum() + 1e-5);
+    }
+  }
 }
 
 // ---- the solve by itself

@@ -1,5 +1,6 @@
 #include "image/sample_bands.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <stop_token>
@@ -48,6 +49,21 @@ TEST(SampleBands, PassesThrowWhatDecodingMet) {
   bands.keepDecoded(folder.path());
   std::jthread decoder([&](const std::stop_token& stop) { bands.decode(stop); });
   EXPECT_THROW(collect(bands, 16), InputError);
+}
+
+TEST(SampleBands, SayWhichFilesSayOtherThingsOfTheirColours) {
+  const test::TemporaryDirectory folder;
+  test::writeSmallCapture(folder / "c", {.expressions = 3, .width = 16, .height = 16});
+  const Capture capture = openCapture(folder / "c");
+  EXPECT_EQ(image::SampleBands(capture.maps[0], capture.expressions).mixedColours(), "");
+  for (const int n : {1, 2}) {
+    const auto& file = capture.maps[0].expressions[static_cast<std::size_t>(n)];
+    image::writeImage(file, image::readImage(file), "linear");
+  }
+  const std::string mixed = image::SampleBands(capture.maps[0], capture.expressions).mixedColours();
+  EXPECT_THAT(mixed,
+              testing::HasSubstr("map \"albedo\": of its colours neutral.png says nothing, e01.png says linear"));
+  EXPECT_THAT(mixed, testing::HasSubstr("1 more"));
 }
 
 TEST(SampleBands, FirstImageIsTheNeutral) {

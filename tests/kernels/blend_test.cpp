@@ -18,26 +18,37 @@ using image::SampleType;
 
 // A program is compiled for every number of channels and textures, scale, type and bits: sizes that differ in nothing
 // else cost little.
-const BlendSizes kSizes[] = {{93, 61, 3, 4, 8, SampleType::kUint8},      {64, 48, 3, 4, 8, SampleType::kUint8},
-                             {1, 1, 3, 4, 8, SampleType::kUint8},        {512, 300, 3, 4, 8, SampleType::kUint8},
-                             {93, 61, 4, 4, 4, SampleType::kUint8},      {35, 19, 4, 4, 4, SampleType::kUint8},
-                             {64, 48, 4, 8, 8, SampleType::kUint8},      {33, 40, 3, 5, 5, SampleType::kUint8},
-                             {37, 21, 3, 5, 5, SampleType::kUint8},      {50, 50, 3, 4, 100, SampleType::kUint8},
-                             {64, 16, 2, 3, 2, SampleType::kUint8},      {93, 61, 1, 4, 16, SampleType::kUint8},
-                             {93, 61, 3, 4, 8, SampleType::kUint16},     {32, 32, 2, 4, 24, SampleType::kUint16},
-                             {93, 61, 1, 1, 3, SampleType::kUint16},     {93, 61, 3, 4, 8, SampleType::kFloat32},
-                             {35, 19, 3, 4, 8, SampleType::kFloat32},    {93, 61, 4, 2, 6, SampleType::kFloat32},
-                             {37, 21, 3, 4, 8, SampleType::kUint8, 16},  {17, 9, 2, 3, 1, SampleType::kUint8, 16},
-                             {37, 21, 4, 5, 8, SampleType::kUint16, 16}, {37, 21, 1, 3, 5, SampleType::kFloat32, 16},
+const BlendSizes kSizes[] = {{93, 61, 3, 4, 8, SampleType::kUint8},
+                             {64, 48, 3, 4, 8, SampleType::kUint8},
+                             {1, 1, 3, 4, 8, SampleType::kUint8},
+                             {512, 300, 3, 4, 8, SampleType::kUint8},
+                             {93, 61, 4, 4, 4, SampleType::kUint8},
+                             {35, 19, 4, 4, 4, SampleType::kUint8},
+                             {64, 48, 4, 8, 8, SampleType::kUint8},
+                             {33, 40, 3, 5, 5, SampleType::kUint8},
+                             {37, 21, 3, 5, 5, SampleType::kUint8},
+                             {50, 50, 3, 4, 100, SampleType::kUint8},
+                             {64, 16, 2, 3, 2, SampleType::kUint8},
+                             {93, 61, 1, 4, 16, SampleType::kUint8},
+                             {93, 61, 3, 4, 8, SampleType::kUint16},
+                             {32, 32, 2, 4, 24, SampleType::kUint16},
+                             {93, 61, 1, 1, 3, SampleType::kUint16},
+                             {93, 61, 3, 4, 8, SampleType::kFloat32},
+                             {35, 19, 3, 4, 8, SampleType::kFloat32},
+                             {93, 61, 4, 2, 6, SampleType::kFloat32},
+                             {37, 21, 3, 4, 8, SampleType::kUint8, 16},
+                             {17, 9, 2, 3, 1, SampleType::kUint8, 16},
+                             {37, 21, 4, 5, 8, SampleType::kUint16, 16},
+                             {37, 21, 1, 3, 5, SampleType::kFloat32, 16},
                              {37, 21, 3, 4, 8, SampleType::kUint8, 16, true},
                              {21, 17, 4, 2, 4, SampleType::kUint8, 8, true}};
 /// Of every type and number of channels, with codes in quads and not.
 const BlendSizes kValueSizes[] = {
-    {93, 61, 3, 4, 8, SampleType::kUint8},      {1, 1, 3, 4, 8, SampleType::kUint8},
-    {35, 19, 4, 4, 4, SampleType::kUint8},      {37, 21, 3, 5, 5, SampleType::kUint8},
-    {93, 61, 1, 4, 16, SampleType::kUint8},     {93, 61, 3, 4, 8, SampleType::kUint16},
-    {35, 19, 3, 4, 8, SampleType::kFloat32},    {17, 9, 2, 3, 1, SampleType::kUint8, 16},
-    {37, 21, 4, 5, 8, SampleType::kUint16, 16}, {37, 21, 1, 3, 5, SampleType::kFloat32, 16},
+    {93, 61, 3, 4, 8, SampleType::kUint8},          {1, 1, 3, 4, 8, SampleType::kUint8},
+    {35, 19, 4, 4, 4, SampleType::kUint8},          {37, 21, 3, 5, 5, SampleType::kUint8},
+    {93, 61, 1, 4, 16, SampleType::kUint8},         {93, 61, 3, 4, 8, SampleType::kUint16},
+    {35, 19, 3, 4, 8, SampleType::kFloat32},        {17, 9, 2, 3, 1, SampleType::kUint8, 16},
+    {37, 21, 4, 5, 8, SampleType::kUint16, 16},     {37, 21, 1, 3, 5, SampleType::kFloat32, 16},
     {37, 21, 3, 4, 8, SampleType::kUint8, 16, true}};
 
 class Blend : public testing::TestWithParam<std::tuple<BlendSizes, KernelVariant>> {

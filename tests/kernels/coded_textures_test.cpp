@@ -1,5 +1,5 @@
-// Difference textures in blocks, one after the other: what the blocks hold, what is left, and that each mends what those
-// before it got wrong.
+// Difference textures in blocks, one after the other: what the blocks hold, what is left, and that each mends what
+// those before it got wrong.
 #include "compress/codes/coded_textures.hpp"
 
 #include <gtest/gtest.h>

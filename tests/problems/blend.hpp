@@ -27,8 +27,7 @@ struct BlendSizes {
 inline void PrintTo(const BlendSizes& sizes, std::ostream* out) {
   *out << sizes.width << "x" << sizes.height << " channels " << sizes.channels << " C " << sizes.differences << " s "
        << sizes.weight_scale << " " << image::sampleTypeName(sizes.type) << " differences in " << sizes.difference_bits
-       << " bits"
-       << (sizes.wide_neutral ? ", neutral in 16" : "");
+       << " bits" << (sizes.wide_neutral ? ", neutral in 16" : "");
 }
 
 /// Must move: the neutral and C differences in, the frame out.
@@ -53,9 +52,9 @@ struct BlendProblem {
   image::SampleType neutralType() const { return sizes.wide_neutral ? image::SampleType::kUint16 : sizes.type; }
   std::size_t samples() const { return toSize(sizes.height, sizes.width, sizes.channels); }
   blend::TextureShape shape() const {
-    return {
-        sizes.width,  sizes.channels,     sizes.differences, sizes.difference_bits, sizes.type,
-        neutralType(), sizes.weight_scale, scale,             zero};
+    return {sizes.width,           sizes.channels, sizes.differences,
+            sizes.difference_bits, sizes.type,     neutralType(),
+            sizes.weight_scale,    scale,          zero};
   }
 
   /// As weight_blend leaves them, times `factor`.

@@ -18,6 +18,9 @@ assert script["first_of"]({"Specular IOR Level": "since", "Specular Tint": "othe
 with open(os.path.join(folder, "package", "package.json"), encoding="utf-8") as stream:
     package = json.load(stream)
 face, graph, values, controls = script["build"](package)
+# The factory scene is gone: its cube would hide the head, its camera stand inside.
+assert {o.type for o in bpy.context.scene.objects} == {"MESH", "CAMERA", "LIGHT"}, list(bpy.context.scene.objects)
+assert [o for o in bpy.context.scene.objects if o.type == "MESH"] == [face]
 script["set_weights"](face, controls, weights)
 shader = next(node for node in graph.tree.nodes if node.type == "BSDF_PRINCIPLED")
 specular = [shader.inputs[name].default_value for name in names if name in shader.inputs]

@@ -229,6 +229,37 @@ await run('a package without mesh and normals is shown flat', async () => {
   bare.stop();
 });
 
+await run('textures in blocks go to the GPU, and give what blend gives', async () => {
+  for (const format of ['bc7', 'astc-5x5']) {
+    const path = join(packages, format);
+    const shown = await serve(path);
+    const page = await open(browser, shown.url);
+    const own = JSON.parse(readFileSync(join(path, 'package.json')));
+    for (const weights of [{}, { [names[1]]: 0.37, [names[3]]: 0.8 }]) {
+      const largest = await blendDifference({ facezip, packagePath: path, description: own, work }, page, bake, weights);
+      console.log(`  ${format}: largest difference ${largest}/255 at ${JSON.stringify(weights)}`);
+      assert.ok(largest <= 1.5, `${largest}/255`);
+    }
+    await screenshot(page, `blocks_${format}`);
+    assert.deepEqual(page.errors, []);
+    await page.close();
+    shown.stop();
+  }
+});
+await run('it says which blocks a graphics driver lacks', async () => {
+  const shown = await serve(join(packages, 'astc-5x5'));
+  const refused = await browser.newPage();
+  await refused.addInitScript(() => {
+    const get = WebGL2RenderingContext.prototype.getExtension;
+    WebGL2RenderingContext.prototype.getExtension = function (name) { return /astc/.test(name) ? null : get.call(this, name); };
+  });
+  await refused.goto(shown.url);
+  await refused.waitForSelector('#message:not([hidden])');
+  assert.match(await refused.locator('#message').textContent(), /astc-5x5 blocks, which this graphics driver does not sample/);
+  await refused.close();
+  shown.stop();
+});
+
 await run('a clip weighs an expression called time', async () => {
   const timed = join(work, 'timed');
   cpSync(join(packages, 'bare'), timed, { recursive: true });

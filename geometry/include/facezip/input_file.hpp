@@ -19,7 +19,8 @@ class InputFile {
   /// The same of a file that was opened for reading, without waiting (O_NONBLOCK).
   /// descriptor  this object's own from now on; negative where opening failed, and errno says why
   /// file        for messages
-  InputFile(int descriptor, const std::filesystem::path& file, const std::string& expected, const std::string& cure = "");
+  InputFile(int descriptor, const std::filesystem::path& file, const std::string& expected,
+            const std::string& cure = "");
   ~InputFile();
   InputFile(InputFile&& other) noexcept;
   InputFile& operator=(InputFile&& other) noexcept;

@@ -1,5 +1,5 @@
-// block_format.hpp - block-compressed texture formats: textures that GPUs hold as blocks of a few texels each and decode
-// while they sample.
+// block_format.hpp - block-compressed texture formats: textures that GPUs hold as blocks of a few texels each and
+// decode while they sample.
 #pragma once
 
 #include <string>

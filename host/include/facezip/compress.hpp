@@ -96,6 +96,8 @@ struct CompressReport {
   /// Of every map whose difference textures were fitted (not with the paper's method): RMSE over the covered texels,
   /// expressions and channels, in 1/255 of full scale, of what is written, before frames are rounded.
   std::vector<std::pair<std::string, double>> rmse;
+  /// The same, pooled over the maps by their metric weights: what a target speaks of.
+  std::optional<double> pooled_rmse;
   /// Squared error after each sweep of the refinement, from the start on, texel and metric weights in it; of the last
   /// set of weights. Empty where nothing was refined.
   std::vector<double> refinement_errors;

@@ -24,5 +24,5 @@
 #include "facezip/rig.hpp"
 #include "facezip/sample_type.hpp"
 #include "facezip/synth.hpp"
-#include "facezip/view.hpp"
 #include "facezip/version.hpp"
+#include "facezip/view.hpp"

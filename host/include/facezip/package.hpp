@@ -23,9 +23,9 @@ class Folder;
 /// One difference texture D_i of one map: an image of 8- or 16-bit codes that decode to D_i = scale * code + offset. Of
 /// one in blocks, a code is 255 times what a sampler returns; it may lie between whole numbers.
 struct PackageDifference {
-  std::string file;            ///< relative to the package
-  std::vector<double> scale;   ///< one per channel, >= 0, in units of 1/255 of full scale for each code
-  std::vector<double> offset;  ///< one per channel, -scale times a whole code, in double: zero is exact
+  std::string file;                        ///< relative to the package
+  std::vector<double> scale;               ///< one per channel, >= 0, in units of 1/255 of full scale for each code
+  std::vector<double> offset;              ///< one per channel, -scale times a whole code, in double: zero is exact
   std::optional<BlockFormat> format = {};  ///< of the blocks of a KTX2 file; none: a PNG
 };
 

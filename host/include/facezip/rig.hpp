@@ -18,11 +18,15 @@
 
 namespace facezip {
 
-/// How the weight maps of the rig's shapes follow from those of the captured expressions: W*_m = sum_n P_mn W_n.
+/// How the weight maps of the rig's shapes follow from those of the captured expressions: W*_m = sum_n P_mn W_n, or
+/// from the shapes alone.
 enum class TextureSolve {
   kLocal,          ///< per weight cell, a change of the skin belongs to shapes that strain it there
   kDamped,         ///< P = B^T (B B^T + lambda I)^-1, everywhere alike
   kPseudoInverse,  ///< P = B^+ (FaceZip, Eq. 11), everywhere alike; amplifies noise
+  /// A shape's own strain says how much it shows of the compress and of the stretch maps (Li et al. 2020, Eq. 10 to
+  /// 14), normalised over the shapes. For Method::kCompressStretch, and for that alone.
+  kStrain,
 };
 
 template <>
@@ -31,12 +35,18 @@ const std::vector<NamedValue<TextureSolve>>& namesOf();
 struct RigOptions {
   geometry::ExampleRigOptions fit;
   std::filesystem::path guess;  ///< weights that the expressions are thought to have (.csv or .json); empty: none
-  TextureSolve texture_solve = TextureSolve::kLocal;
+  /// None: textureSolveOf().
+  std::optional<TextureSolve> texture_solve;
   /// lambda of kLocal and kDamped, > 0; none: 0.3 for kDamped, and for kLocal what predicts each captured expression
   /// best from the others.
   std::optional<double> texture_damping;
   CompressOptions compress;
 };
+
+/// What is asked for, or else what belongs to the method: kPseudoInverse to the paper's (FaceZip, section 3.2), kStrain
+/// to compress and stretch maps, kLocal to the others. Throws InputError where only one of method and solve is of
+/// compress and stretch maps.
+TextureSolve textureSolveOf(const RigOptions& options);
 
 /// Distances of a posed mesh from the captured one, in millimetres.
 struct RigResidual {

@@ -77,7 +77,8 @@ std::string definesOf(const TextureShape& shape, int quad_planes, bool gpu, bool
       "-D LANES={} -D CHANNELS={} -D DIFFERENCES={} -D SCALE={} -D SAMPLE_TYPE={} -D NEUTRAL_TYPE={} -D CODE_BITS={} "
       "-D QUAD_PLANES={} -D VALUES={} -D CLANG_BUILTINS={}",
       gpu ? 1 : kTileWidth, shape.channels, shape.differences, shape.weight_scale, static_cast<int>(shape.sample_type),
-      static_cast<int>(shape.neutral_type), shape.difference_bits, quad_planes, form == FrameForm::kValues ? 1 : 0, clang_builtins ? 1 : 0);
+      static_cast<int>(shape.neutral_type), shape.difference_bits, quad_planes, form == FrameForm::kValues ? 1 : 0,
+      clang_builtins ? 1 : 0);
 }
 
 }  // namespace

@@ -21,13 +21,13 @@ enum class FrameForm { kSamples, kValues };
 
 /// What a map's textures are, for the kernel.
 struct TextureShape {
-  int width = 0;                                              ///< texels
-  int channels = 0;                                           ///< 1 to 4
-  int differences = 0;                                        ///< C, 1 to 8
-  int difference_bits = 8;                                    ///< of a code: 8 or 16
+  int width = 0;                                               ///< texels
+  int channels = 0;                                            ///< 1 to 4
+  int differences = 0;                                         ///< C, 1 to 8
+  int difference_bits = 8;                                     ///< of a code: 8 or 16
   image::SampleType sample_type = image::SampleType::kUint8;   ///< of a frame
   image::SampleType neutral_type = image::SampleType::kUint8;  ///< of the neutral: that, or 16 bits for frames of 8
-  int weight_scale = 0;                                       ///< s
+  int weight_scale = 0;                                        ///< s
   std::vector<float>
       scale;  ///< [C][channels], steps of a sample (8-bit 1, 16-bit 1/257 and float 255 in 1/255) per code
   std::vector<float> zero;  ///< [C][channels], the code that means 0

@@ -22,7 +22,7 @@ std::uint64_t weightBytes(const Package& package) {
   std::uint64_t kept = 0, largest = 0;
   for (const PackageWeights& set : package.weightSets()) {
     const WeightCodes grid{set.tile_width, set.tile_height, static_cast<int>(package.expressions().size()), set.scale,
-                          set.offset};
+                           set.offset};
     const std::uint64_t floats = grid.blocks() * WeightCodes::kBlockCells * toSize(grid.channels() + 1) * sizeof(float);
     kept += grid.codeBytes() + floats;
     largest = std::max<std::uint64_t>(largest, grid.codeBytes());  // on the host, while a set is read

@@ -34,8 +34,8 @@ void writeWhole(const fs::path& file, const image::ImageShape& shape, const std:
   staged.commit();
 }
 
-/// What says that a folder holds the textures of a capture or package: its neutral, and beside the folder what describes
-/// it. Empty where nothing does.
+/// What says that a folder holds the textures of a capture or package: its neutral, and beside the folder what
+/// describes it. Empty where nothing does.
 std::string signOfTextures(const fs::path& folder) {
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {

@@ -73,7 +73,8 @@ BlockFormat blockFormatOf(std::string_view name, std::string_view option) {
 
 std::string blockFormatNames() {
   std::string names;
-  for (const blocks::BlockFormatInfo& info : blocks::blockFormats()) names += fmt::format("{}{}", names.empty() ? "" : ", ", info.name);
+  for (const blocks::BlockFormatInfo& info : blocks::blockFormats())
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", info.name);
   return names;
 }
 

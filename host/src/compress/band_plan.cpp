@@ -51,11 +51,11 @@ BandCost bandCost(const BandShape& shape, int textures, int mask_count) {
   const std::uint64_t masks = texels * 4 * static_cast<std::uint64_t>(std::min(mask_count, kTypicalMasksPerTile) + 1);
   const std::uint64_t raster = texels * 16 * 2;
   const std::uint64_t outputs = texels * channels * static_cast<std::uint64_t>(textures) * (4 + 2);
-  const std::uint64_t factors =
-      shape.neutral_decoded
-          ? texels * sizeof(float) *
-                static_cast<std::uint64_t>(FACEZIP_FACTOR_PLANES(textures, shape.channels) + 2 * shape.channels * textures)
-          : 0;  // and codes, decoded textures
+  const std::uint64_t factors = shape.neutral_decoded
+                                    ? texels * sizeof(float) *
+                                          static_cast<std::uint64_t>(FACEZIP_FACTOR_PLANES(textures, shape.channels) +
+                                                                     2 * shape.channels * textures)
+                                    : 0;  // and codes, decoded textures
   BandCost cost;
   // Samples: one band being decoded, one at work, one on the device. Masks: on the host and on the device.
   cost.per_row = 3 * samples + differences + 2 * masks + raster + outputs + factors;

@@ -45,8 +45,7 @@ PackageForm formOf(const CompressOptions& options) {
   PackageForm form{stretches ? kCompressStretchMaps : options.differences, options.weight_scale, std::nullopt,
                    std::nullopt};
   if (options.texture_format) {
-    form.blocks = TextureFormats{*options.texture_format,
-                                 options.difference_format.value_or(*options.texture_format)};
+    form.blocks = TextureFormats{*options.texture_format, options.difference_format.value_or(*options.texture_format)};
   }
   return form;
 }

@@ -29,12 +29,11 @@ void requireSaneOptions(const CompressOptions& options) {
   require(options.mask_cutoff >= 0.0 && options.mask_cutoff < 1.0, "--mask-cutoff", "0 or more and below 1",
           fmt::format("{}", options.mask_cutoff));
   require(!options.masks || *options.masks >= 1, "--masks", "at least 1", fmt::format("{}", options.masks.value_or(0)));
-  require(!options.difference_format || options.texture_format, "--difference-format", "a block --texture-format beside it",
-          "png");
+  require(!options.difference_format || options.texture_format, "--difference-format",
+          "a block --texture-format beside it", "png");
   // They are recorded as JSON.
   require(package::isUtf8(options.region), "--region", "a name in UTF-8", package::quoted(options.region));
-  require(package::isUtf8(options.importance), "--importance", "a name in UTF-8",
-          package::quoted(options.importance));
+  require(package::isUtf8(options.importance), "--importance", "a name in UTF-8", package::quoted(options.importance));
   constexpr int kWidestGutter = 1024;  // the default of the largest textures
   require(!options.gutter || (*options.gutter >= 0 && *options.gutter <= kWidestGutter), "--gutter", "0 to 1024",
           fmt::format("{}", options.gutter.value_or(0)));

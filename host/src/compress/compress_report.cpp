@@ -54,6 +54,7 @@ CompressReport makeReport(const CompressionJob& job, const OpenTextures& texture
     if (!attempt.errors[m]) continue;
     report.rmse.emplace_back(job.maps.maps[m].source->name, rmseOf(job, m, *attempt.errors[m]));
   }
+  if (report.rmse.size() == attempt.errors.size()) report.pooled_rmse = pooledRmse(job, attempt);
   report.refinement_errors = attempt.sweep_errors;
   report.band_rows = attempt.band_rows;
   report.decoded = textures.decoded;

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "compress/bands/difference.hpp"
 #include "compress/refine/difference_fit.hpp"
@@ -13,6 +15,17 @@
 #include "raster/cell_samples.hpp"
 
 namespace facezip::compress {
+namespace {
+
+/// Where the running sum of a cell's shares is rounded, 0 to 1. The R2 sequence (Roberts 2018) spreads it evenly over
+/// any few neighbouring cells, which bilinear interpolation then averages. Clear of 0 and 1, so that shares that are
+/// whole codes already keep them.
+double roundingPhase(std::size_t column, std::size_t row) {
+  const double phase = 0.7548776662466927 * static_cast<double>(column) + 0.5698402909980532 * static_cast<double>(row);
+  return 0.01 + 0.98 * (phase - std::floor(phase));
+}
+
+}  // namespace
 
 Eigen::MatrixXd vertexInfluences(const geometry::TriangleMesh& neutral,
                                  const std::vector<Eigen::MatrixX3d>& expressions) {
@@ -29,16 +42,25 @@ Eigen::MatrixXd vertexInfluences(const geometry::TriangleMesh& neutral,
   return influences;
 }
 
-EncodedWeights normalisedInfluences(const geometry::TriangleMesh& neutral, const Eigen::MatrixXd& influences,
-                                    const raster::UvRaster& raster, int scale) {
-  const Eigen::Index expressions = influences.cols() / 2;
+int InfluenceShares::steps(int map) const {
+  float most = 0.0f;
+  for (std::size_t cell = 0; cell < cells(); ++cell) {
+    const float* of_map = shares.data() + (cell * kCompressStretchMaps + toSize(map)) * toSize(members);
+    most = std::max(most, *std::max_element(of_map, of_map + members));
+  }
+  // A whole number, so that sums of codes are whole too; one less than the quotient, which was rounded.
+  return most > 0.0f ? std::max(255, static_cast<int>(std::min(255.0 / static_cast<double>(most), 1e6)) - 1) : 255;
+}
+
+InfluenceShares normalisedInfluences(const geometry::TriangleMesh& neutral, const Eigen::MatrixXd& influences,
+                                     const raster::UvRaster& raster, int scale) {
+  const Eigen::Index members = influences.cols() / 2;
   const int columns = (raster.width() + scale - 1) / scale;
   const int rows = (raster.height() + scale - 1) / scale;
   const std::vector<raster::TexelSample> samples = raster::cellSamples(raster, scale);
   const std::vector<int> source = raster::nearestSampled(samples, columns, rows);
-  // Normalised influences are shares: 255 codes from 0 to 1.
-  EncodedWeights encoded{{1.0 / 255.0, 1.0 / 255.0}, {0.0, 0.0}, {}};
-  encoded.codes.assign(toSize(expressions * kCompressStretchMaps) * samples.size(), 0);
+  InfluenceShares found{static_cast<int>(members), columns, {}};
+  found.shares.assign(samples.size() * toSize(kCompressStretchMaps * members), 0.0f);
   for (std::size_t cell = 0; cell < samples.size(); ++cell) {
     if (source[cell] < 0) continue;
     const raster::TexelSample& at = samples[toSize(source[cell])];
@@ -46,15 +68,44 @@ EncodedWeights normalisedInfluences(const geometry::TriangleMesh& neutral, const
     const Eigen::ArrayXd here = static_cast<double>(at.b0) * corner(0) + static_cast<double>(at.b1) * corner(1) +
                                 (1.0 - static_cast<double>(at.b0) - static_cast<double>(at.b1)) * corner(2);
     for (int i = 0; i < kCompressStretchMaps; ++i) {
-      const Eigen::ArrayXd of_map = here.reshaped(2, expressions).row(i);
+      const Eigen::ArrayXd of_map = here.reshaped(2, members).row(i);
       const Eigen::ArrayXd shares = (of_map - of_map.maxCoeff()).exp();  // Eq. 12, without overflow
-      for (Eigen::Index n = 0; n < expressions; ++n) {
-        const std::size_t entry = (toSize(n) * samples.size() + cell) * kCompressStretchMaps;
-        encoded.codes[entry + toSize(i)] = static_cast<std::uint8_t>(std::lround(255.0 * shares[n] / shares.sum()));
+      float* to = found.shares.data() + (cell * kCompressStretchMaps + toSize(i)) * toSize(members);
+      Eigen::Map<Eigen::ArrayXf>(to, members) = (shares / shares.sum()).cast<float>();
+    }
+  }
+  return found;
+}
+
+std::vector<std::uint8_t> shareCodes(const InfluenceShares& shares,
+                                     const std::array<int, kCompressStretchMaps>& steps) {
+  const std::size_t cells = shares.cells(), members = toSize(shares.members);
+  std::vector<std::uint8_t> codes(members * cells * kCompressStretchMaps, 0);
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    const double phase = roundingPhase(cell % toSize(shares.columns), cell / toSize(shares.columns));
+    for (std::size_t i = 0; i < kCompressStretchMaps; ++i) {
+      const float* of_map = shares.shares.data() + (cell * kCompressStretchMaps + i) * members;
+      const double sum = std::accumulate(of_map, of_map + members, 0.0);
+      if (!(sum > 0.0)) continue;
+      // The running sum is rounded, and each share gets what it adds to that: the last one ends at `steps`.
+      double running = 0.0;
+      int given = 0;
+      for (std::size_t n = 0; n < members; ++n) {
+        running += static_cast<double>(of_map[n]) / sum;
+        const bool last = n + 1 == members;
+        const int reached = last ? steps[i] : std::min(static_cast<int>(steps[i] * running + phase), steps[i]);
+        codes[(n * cells + cell) * kCompressStretchMaps + i] =
+            static_cast<std::uint8_t>(std::clamp(reached - given, 0, 255));
+        given = reached;
       }
     }
   }
-  return encoded;
+  return codes;
+}
+
+EncodedWeights encodeShares(const InfluenceShares& shares) {
+  const std::array<int, kCompressStretchMaps> steps = {shares.steps(0), shares.steps(1)};
+  return {{1.0 / steps[0], 1.0 / steps[1]}, {0.0, 0.0}, shareCodes(shares, steps)};
 }
 
 CompressStretchTextures::CompressStretchTextures(device::DeviceContext& context, const WeightSpace& space,

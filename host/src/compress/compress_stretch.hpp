@@ -3,12 +3,15 @@
 // influences its weight maps, and Eq. 14 is then FaceZip's Eq. 8 with C = 2.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "compress/refine/difference_fit.hpp"
 #include "compress/refine/grid_weights.hpp"
 #include "compress/texture_source.hpp"
 #include "facezip/geometry/mesh.hpp"
+#include "io/counts.hpp"
 #include "raster/uv_raster.hpp"
 
 namespace facezip::compress {
@@ -24,11 +27,31 @@ inline constexpr double kInfluenceUnit = 0.05;
 Eigen::MatrixXd vertexInfluences(const geometry::TriangleMesh& neutral,
                                  const std::vector<Eigen::MatrixX3d>& expressions);
 
+/// Shares of a whole at the cells of a weight grid: of either map they add up to 1 over the members in every cell.
+struct InfluenceShares {
+  int members = 0;            ///< expressions, or shapes of a rig
+  int columns = 0;            ///< cells of a row
+  std::vector<float> shares;  ///< [cell][2][member]; a cell without any is all 0
+
+  std::size_t cells() const { return shares.size() / toSize(kCompressStretchMaps * members); }
+  /// As many code steps to a share of 1, 255 at least, as leave a code to the largest share of `map`.
+  int steps(int map) const;
+};
+
 /// Influences at the cells of the weight grid, interpolated from the vertices at the texel nearest to each cell's
-/// centre and normalised over the expressions (Eq. 12), as the codes of a package. Cells without covered texels copy
-/// the nearest cell that has some. scale  texels per cell and axis, of the raster
-EncodedWeights normalisedInfluences(const geometry::TriangleMesh& neutral, const Eigen::MatrixXd& influences,
-                                    const raster::UvRaster& raster, int scale);
+/// centre and normalised over the members (Eq. 12). Cells without covered texels copy the nearest cell that has some.
+/// scale  texels per cell and axis, of the raster
+InfluenceShares normalisedInfluences(const geometry::TriangleMesh& neutral, const Eigen::MatrixXd& influences,
+                                     const raster::UvRaster& raster, int scale);
+
+/// Codes of shares of which `steps` make 1, each less than one code off: [member][cell][2]. In every cell the codes
+/// of a map add up to its steps exactly, for Eq. 13 is a mean only where shares add up to 1. Rounded one by one they
+/// would not: a hundred shares of 1/100 are 2.55 codes each, and three codes each are 18 % too many. Which of them are
+/// rounded up differs from cell to cell, so that no expression is favoured.
+std::vector<std::uint8_t> shareCodes(const InfluenceShares& shares, const std::array<int, kCompressStretchMaps>& steps);
+
+/// The shares as a package holds them, in the finest codes that they allow.
+EncodedWeights encodeShares(const InfluenceShares& shares);
 
 /// Eq. 13 on the device. Returned textures: [tile][2][channel][256] float.
 class CompressStretchTextures : public TextureSource {

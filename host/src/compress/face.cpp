@@ -7,6 +7,7 @@
 #include <cmath>
 #include <span>
 
+#include "facezip/geometry/float_origin.hpp"
 #include "facezip/geometry/obj_io.hpp"
 #include "facezip/geometry/topology.hpp"
 #include "image/image_file.hpp"
@@ -72,13 +73,14 @@ std::vector<Eigen::MatrixX3f> readExpressionMeshes(const Capture& capture, const
                                                    Progress& progress) {
   progress.stage("checking meshes", capture.expression_meshes.size());
   std::vector<Eigen::MatrixX3f> positions(capture.expression_meshes.size());
+  const Eigen::RowVector3d origin = geometry::floatOrigin(neutral.positions);
   tbb::parallel_for(std::size_t{0}, capture.expression_meshes.size(), [&](std::size_t n) {
     const fs::path& file = capture.expression_meshes[n];
     if (file.empty()) return;
     progress.checkCancelled();
     const geometry::TriangleMesh mesh = geometry::readObj(file);
     geometry::requireSameTopology(neutral, capture.neutral_mesh.string(), mesh, file.string());
-    positions[n] = mesh.positions.cast<float>();
+    positions[n] = (mesh.positions.rowwise() - origin).cast<float>();
   });
   return positions;
 }

@@ -28,7 +28,8 @@ struct Face {
 Face readFace(const Capture& capture, const std::string& region);
 
 /// Reads every expression mesh of the capture and checks it against the neutral. Returns the positions of each, #V by
-/// 3; 0 rows where an expression has no mesh. Throws InputError naming the first that differs.
+/// 3, less geometry::floatOrigin() of the neutral; 0 rows where an expression has no mesh. Throws InputError naming the
+/// first that differs.
 std::vector<Eigen::MatrixX3f> readExpressionMeshes(const Capture& capture, const geometry::TriangleMesh& neutral,
                                                    Progress& progress);
 

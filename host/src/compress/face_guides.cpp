@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "export/gltf_scene.hpp"
+#include "facezip/geometry/float_origin.hpp"
 #include "package/guides.hpp"
 #include "package/package_json.hpp"
 
@@ -116,7 +117,8 @@ void writeFaceMesh(const Capture& capture, const Face& face, std::optional<geome
   scene.name = capture.name.empty() ? "face" : capture.name;
   scene.neutral = face.mesh;
   // In floats, as the expressions are: what does not move is then exactly 0.
-  scene.neutral.positions = face.mesh.positions.cast<float>().cast<double>();
+  scene.origin = geometry::floatOrigin(face.mesh.positions);
+  scene.neutral.positions = (face.mesh.positions.rowwise() - scene.origin).cast<float>().cast<double>();
   scene.metres_per_unit = unit ? geometry::metresPerUnit(*unit) : 1.0;  // no head: its own unit will do
   for (std::size_t n = 0; n < expressions.size(); ++n) {
     if (expressions[n].rows() == 0) continue;

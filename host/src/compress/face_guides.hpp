@@ -25,9 +25,9 @@ struct MaskGuides {
 /// most nine regions, "upper left" to "lower right". A head that does not stand upright along y gets other names.
 MaskGuides makeMaskGuides(const Face& face, const FaceMasks& masks, const raster::GridMasks& grid);
 
-/// Writes mesh.glb into `directory`: the neutral, and as morph targets the expressions that have a mesh. In metres
-/// where the unit is known or can be guessed, else as it is in the capture. expressions  N, #V by 3 or 0 rows Throws
-/// OutputError.
+/// Writes mesh.glb into `directory`: the neutral, and as morph targets the expressions that have a mesh; all less
+/// geometry::floatOrigin() of the neutral. In metres where the unit is known or can be guessed, else as it is in the
+/// capture. expressions  N, #V by 3 or 0 rows, as readExpressionMeshes() gives them. Throws OutputError.
 void writeFaceMesh(const Capture& capture, const Face& face, std::optional<geometry::LengthUnit> unit,
                    const std::vector<Eigen::MatrixX3f>& expressions, const std::filesystem::path& directory);
 

@@ -4,6 +4,8 @@
 
 #include <filesystem>
 
+#include "facezip/geometry/float_origin.hpp"
+
 namespace facezip::compress {
 namespace {
 
@@ -26,6 +28,8 @@ FaceModel readFaceModel(const Capture& capture, const CompressOptions& options, 
   // Read even where the package gets no mesh: a mesh of another topology is a fault of the capture.
   model.expression_meshes = readExpressionMeshes(capture, model.face.mesh, run.progress);
   if (!options.mesh) model.expression_meshes.clear();
+  const Eigen::RowVector3d origin = geometry::floatOrigin(model.face.mesh.positions);
+  if (options.mesh && !origin.isZero(0.0)) run.progress.note(geometry::originNote(origin, "mesh.glb"));
   model.importance = readImportance(capture, options);
   run.clock.book("meshes");
   model.masks = makeFaceMasks(capture, model.face, options, run.progress);

@@ -54,8 +54,7 @@ int MemoryPlan::bandRows(const PackageForm& form) const {
 int MemoryPlan::windowRows(const PackageForm& form, std::span<const GridMap> group) const {
   const WeightSpace space = weightSpace(maps_, form);
   return planWindowRows(group, space, {sweepsHalfCells(run_.context, group), form.blocks.has_value()},
-                        run_.memory_bytes, residentBytes(space),
-                        run_.context.info());
+                        run_.memory_bytes, residentBytes(space), run_.context.info());
 }
 
 }  // namespace facezip::compress

@@ -13,7 +13,10 @@ OpenTextures openTextures(const Capture& capture, const std::filesystem::path& s
   OpenTextures textures;
   textures.maps = openMaps(capture);
   std::uint64_t decoded_bytes = 0;
-  for (const OpenMap& map : textures.maps.maps) decoded_bytes += map.samples->decodedBytes();
+  for (const OpenMap& map : textures.maps.maps) {
+    decoded_bytes += map.samples->decodedBytes();
+    if (const std::string mixed = map.samples->mixedColours(); !mixed.empty()) run.progress.note(mixed);
+  }
   // Room for the package itself is kept free: it is never larger than the decoded textures.
   if (image::ScratchFile::freeBytes(scratch_directory) < 2 * decoded_bytes) {
     textures.decoded = "decoded again";

@@ -89,7 +89,8 @@ SearchedWeights influenceWeights(const Capture& capture, const Face& face, const
   const std::vector<Eigen::MatrixX3d> meshes =
       readExpressionMeshes(capture, face.mesh, "its mesh, for its influence", run.progress);
   SearchedWeights searched;
-  searched.weights = normalisedInfluences(face.mesh, vertexInfluences(face.mesh, meshes), raster, weight_scale);
+  searched.weights =
+      encodeShares(normalisedInfluences(face.mesh, vertexInfluences(face.mesh, meshes), raster, weight_scale));
   run.clock.book("influences");
   return searched;
 }

@@ -44,12 +44,12 @@ enum class KernelVariant { kAuto, kCpu, kGpu };
 class WorkItems {
  public:
   template <std::integral... Counts>
-    requires(sizeof...(Counts) >= 1 && sizeof...(Counts) <= 3)
-  explicit WorkItems(Counts... counts) : all_(toSize(counts)...) {}
+  requires(sizeof...(Counts) >= 1 && sizeof...(Counts) <= 3) explicit WorkItems(Counts... counts)
+      : all_(toSize(counts)...) {}
 
   template <std::integral... Counts>
-    requires(sizeof...(Counts) >= 1 && sizeof...(Counts) <= 3)
-  WorkItems inGroupsOf(Counts... counts) const {
+  requires(sizeof...(Counts) >= 1 && sizeof...(Counts) <= 3) WorkItems inGroupsOf(Counts... counts)
+  const {
     WorkItems items = *this;
     items.group_ = cl::NDRange(toSize(counts)...);
     return items;
@@ -68,14 +68,15 @@ class WorkItems {
 template <typename T>
 concept KernelArgument = std::same_as<T, cl_int> || std::same_as<T, cl_ulong> || std::same_as<T, cl_float> ||
                          std::same_as<T, cl_float4> || std::same_as<T, cl::Buffer> ||
-                         (std::is_trivially_copyable_v<T> && requires { typename T::KernelStruct; }) || requires(const T& holder) {
-                           { holder.buffer() } -> std::same_as<const cl::Buffer&>;
-                         };
+                         (std::is_trivially_copyable_v<T>&& requires { typename T::KernelStruct; }) ||
+                         requires(const T& holder) {
+  { holder.buffer() } -> std::same_as<const cl::Buffer&>;
+};
 
 /// Values that lie one behind the other and can be copied as bytes.
 template <typename R>
 concept Values = std::ranges::contiguous_range<R> && std::ranges::sized_range<R> &&
-                 std::is_trivially_copyable_v<std::ranges::range_value_t<R>>;
+    std::is_trivially_copyable_v<std::ranges::range_value_t<R>>;
 
 class DeviceContext {
  public:

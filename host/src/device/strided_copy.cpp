@@ -50,8 +50,8 @@ void writeStrided(const DeviceContext& context, const cl::Buffer& buffer, const 
   if (values.empty()) return;
   const Rectangle r = rectangleOf(context, buffer, pieces, values.size());
   try {
-    context.queue().enqueueWriteBufferRect(buffer, CL_TRUE, r.origin, r.host_origin, r.region, r.pitch, 0,
-                                           r.host_pitch, 0, values.data());
+    context.queue().enqueueWriteBufferRect(buffer, CL_TRUE, r.origin, r.host_origin, r.region, r.pitch, 0, r.host_pitch,
+                                           0, values.data());
   } catch (const cl::Error& error) {
     throw toDeviceError(error, "writing pieces of a buffer", context.info());
   }

@@ -62,8 +62,9 @@ std::optional<MapErrors> everyTextureErrors(const OpenMap& map, BlockFormat form
       subject.progress.checkCancelled();
       const auto bytes = band.samples.subspan((n + 1) * samples, samples);
       const std::span captured(reinterpret_cast<const std::uint8_t*>(bytes.data()), samples);
-      encoder->encode({.width = shape.width, .rows = rows, .channels = shape.channels, .samples = captured, .weights = {}},
-                      coded, decoded);
+      encoder->encode(
+          {.width = shape.width, .rows = rows, .channels = shape.channels, .samples = captured, .weights = {}}, coded,
+          decoded);
       sums[n] += squaredError(decoded, captured, texels, toSize(shape.channels));
     }
     subject.progress.advance(toSize(band.end));

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <optional>
 #include <set>
-#include <string_view>
 
 #include "export/texture_copy.hpp"
 #include "package/package_files.hpp"
@@ -39,20 +39,6 @@ std::string identifier(const std::string& name, const std::set<std::string>& tak
   return unique;
 }
 
-MapRole roleOf(const std::string& name, const std::vector<EngineMap>& before) {
-  static constexpr std::pair<std::string_view, MapRole> kParts[] = {{"albedo", MapRole::kAlbedo},
-                                                                    {"diffuse", MapRole::kAlbedo},
-                                                                    {"normal", MapRole::kNormal},
-                                                                    {"roughness", MapRole::kRoughness}};
-  const std::string lower = lowerCase(name);
-  for (const auto& [part, role] : kParts) {
-    if (lower.find(part) == std::string::npos) continue;
-    const bool taken = std::ranges::any_of(before, [&](const EngineMap& map) { return map.role == role; });
-    return taken ? MapRole::kOther : role;
-  }
-  return MapRole::kOther;
-}
-
 /// Codes of 16 bits are exported as the nearest of 8, zero as the nearest too: nothing then stays nothing.
 EngineDifference engineDifference(const PackageMap& map, const PackageDifference& difference) {
   const double step = map.difference_bits == 16 ? 257.0 : 1.0;
@@ -66,12 +52,21 @@ EngineDifference engineDifference(const PackageMap& map, const PackageDifference
   return engine;
 }
 
-std::vector<PackageImage> differencesOf(const EngineMap& map) {
-  std::vector<PackageImage> images;
-  for (const PackageDifference& difference : map.map.differences) {
-    images.push_back({difference.file, package::differenceShape(map.map)});
+std::vector<package::StoredTexture> differencesOf(const EngineMap& map) {
+  std::vector<package::StoredTexture> textures;
+  for (int i = 0; i < static_cast<int>(map.map.differences.size()); ++i) {
+    textures.push_back(package::differenceTexture(map.map, i));
   }
-  return images;
+  return textures;
+}
+
+/// A texture in blocks of the map; none where all are images.
+std::optional<BlockFormat> blocksOf(const PackageMap& map) {
+  if (map.neutral_format) return map.neutral_format;
+  for (const PackageDifference& difference : map.differences) {
+    if (difference.format) return difference.format;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -79,9 +74,11 @@ std::vector<PackageImage> differencesOf(const EngineMap& map) {
 std::vector<EngineMap> engineMaps(const Package& package) {
   std::vector<EngineMap> maps;
   std::set<std::string> taken;
-  for (const PackageMap& map : package.maps()) {
+  const std::vector<MapRole> roles = rolesOf(package.maps());
+  for (std::size_t m = 0; m < roles.size(); ++m) {
+    const PackageMap& map = package.maps()[m];
     if (map.sample_type == SampleType::kFloat32) continue;
-    EngineMap engine{identifier(map.name, taken), map, roleOf(map.name, maps), {}};
+    EngineMap engine{identifier(map.name, taken), map, roles[m], {}};
     taken.insert(lowerCase(engine.id));
     for (const PackageDifference& difference : map.differences) {
       engine.differences.push_back(engineDifference(map, difference));
@@ -99,6 +96,10 @@ std::vector<std::string> lossesOf(const Package& package) {
           fmt::format("{}: left out, its samples are floats and textures of engines have 8 bits", map.name));
     } else if (map.sample_type == SampleType::kUint16) {
       losses.push_back(fmt::format("{}: rounded from 16 bits to 8", map.name));
+    } else if (const std::optional<BlockFormat> format = blocksOf(map)) {
+      losses.push_back(
+          fmt::format("{}: its {} blocks are decoded to PNG; import it uncompressed, or the engine codes it again",
+                      map.name, blockFormatName(*format)));
     }
   }
   return losses;
@@ -111,14 +112,13 @@ void requireMaps(const Package& package, const std::vector<EngineMap>& maps) {
 }
 
 void writeNeutral(const Package& package, const EngineMap& map, const fs::path& folder, Progress& progress) {
-  copyTexture(package, {map.map.neutral_file, package::neutralShape(map.map)}, folder / (map.id + "_neutral.png"),
-              progress);
+  copyTexture(package, package::neutralTexture(map.map), folder / (map.id + "_neutral.png"), progress);
 }
 
 void writeDifferences(const Package& package, const EngineMap& map, const fs::path& folder, Progress& progress) {
-  const std::vector<PackageImage> images = differencesOf(map);
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    copyTexture(package, images[i], folder / fmt::format("{}_difference_{}.png", map.id, i), progress);
+  const std::vector<package::StoredTexture> textures = differencesOf(map);
+  for (std::size_t i = 0; i < textures.size(); ++i) {
+    copyTexture(package, textures[i], folder / fmt::format("{}_difference_{}.png", map.id, i), progress);
   }
 }
 
@@ -154,7 +154,8 @@ void writeWeights(const Package& package, const std::vector<EngineMap>& maps, co
     const PackageWeights& weights = package.weightSets()[static_cast<std::size_t>(set)];
     for (std::size_t f = 0; f < weights.files.size(); ++f) {
       const image::ImageShape shape = package::atlasShape(weights, package.differences(), static_cast<int>(f));
-      copyTexture(package, {weights.files[f], shape}, folder / fmt::format("weights_{}_{}.png", set, f), progress);
+      copyTexture(package, {weights.files[f], std::nullopt, shape}, folder / fmt::format("weights_{}_{}.png", set, f),
+                  progress);
     }
   }
 }

@@ -7,13 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "export/map_roles.hpp"
 #include "facezip/package.hpp"
 #include "facezip/progress.hpp"
 
 namespace facezip::exporting {
-
-/// What a map is in a physical material; the first map of a role has it.
-enum class MapRole { kAlbedo, kNormal, kRoughness, kOther };
 
 /// D_i of a map, in sampled values: D = scale (sample - zero), in units of full scale, 0 beyond the map's channels.
 struct EngineDifference {

@@ -37,18 +37,24 @@ enum class Textures {
 /// package; without it, a copy.
 struct Target {
   std::vector<std::string> files;
+  std::vector<exporting::MapRole> roles;  ///< that its material shows
   Textures textures = Textures::kPackage;
   void (*write)(const Package& package, const fs::path& folder, Progress& progress) = nullptr;
 };
 
 const std::map<std::string, Target>& targets() {
+  using exporting::MapRole;
+  static const std::vector<MapRole> every = {MapRole::kAlbedo, MapRole::kNormal, MapRole::kRoughness,
+                                             MapRole::kOcclusion};
+  // Cycles finds occlusion itself.
+  static const std::vector<MapRole> traced = {MapRole::kAlbedo, MapRole::kNormal, MapRole::kRoughness};
   static const std::map<std::string, Target> all = {
-      {"gltf", {{"gltf.md", "facezip_blend.h"}}},
-      {"three", {{"three.md", "facezip_three.js"}}},
-      {"blender", {{"blender.md", "facezip_blender.py"}}},
-      {"godot", {{"godot.md", "facezip_face.gd", "demo.gd"}, Textures::kNone, exporting::writeGodot}},
-      {"unity", {{"unity.md", "FaceZipDriver.cs", "FaceZipImport.cs"}, Textures::kOwn, exporting::writeUnity}},
-      {"unreal", {{"unreal.md", "facezip_unreal.py"}, Textures::kNone, exporting::writeUnreal}}};
+      {"gltf", {{"gltf.md", "facezip_blend.h"}, every}},
+      {"three", {{"three.md", "facezip_three.js"}, every}},
+      {"blender", {{"blender.md", "facezip_blender.py"}, traced}},
+      {"godot", {{"godot.md", "facezip_face.gd", "demo.gd"}, every, Textures::kNone, exporting::writeGodot}},
+      {"unity", {{"unity.md", "FaceZipDriver.cs", "FaceZipImport.cs"}, every, Textures::kOwn, exporting::writeUnity}},
+      {"unreal", {{"unreal.md", "facezip_unreal.py"}, every, Textures::kNone, exporting::writeUnreal}}};
   return all;
 }
 
@@ -71,11 +77,18 @@ void copyPackage(const Package& package, const fs::path& folder, std::uint64_t m
   }
 }
 
-/// The blend for readers of glTF: package.json as it is but for how it was made, which is unstable.
+/// The blend for readers of glTF: package.json as it is but for how it was made, which is unstable, and which map is
+/// what in a material.
 nlohmann::json blendExtras(const PackageDescription& description) {
   nlohmann::json blend = nlohmann::json::parse(package::packageJson(description));
   blend.erase("method");
   blend["folder"] = "package";
+  blend["roles"] = nlohmann::json::object();
+  const std::vector<exporting::MapRole> roles = exporting::rolesOf(description.maps);
+  for (std::size_t m = 0; m < roles.size(); ++m) {
+    if (roles[m] != exporting::MapRole::kOther)
+      blend["roles"][exporting::roleName(roles[m])] = description.maps[m].name;
+  }
   return {{"facezip", blend}};
 }
 
@@ -89,6 +102,8 @@ exporting::GltfMaterial plainMaterial(const Package& package, Textures textures)
     const std::string file = own ? "textures/" + map.id + "_neutral.png" : "package/" + map.map.neutral_file;
     if (map.role == exporting::MapRole::kAlbedo) material.base_colour_texture = file;
     if (map.role == exporting::MapRole::kNormal) material.normal_texture = file;
+    if (map.role == exporting::MapRole::kRoughness) material.roughness_texture = file;
+    if (map.role == exporting::MapRole::kOcclusion) material.occlusion_texture = file;
   }
   if (!own) material.extras = blendExtras(package.description());
   return material;
@@ -155,7 +170,9 @@ std::vector<std::string> exportPackage(const Package& package, const std::string
     io::writeTextFile(staged.path() / (readme ? "README.md" : file), readme ? withNames(text, package) : text);
   }
   staged.commit();
-  return chosen.write != nullptr ? exporting::lossesOf(package) : std::vector<std::string>();
+  std::vector<std::string> notes = chosen.write != nullptr ? exporting::lossesOf(package) : std::vector<std::string>();
+  for (std::string& note : exporting::notesOfRoles(package.maps(), chosen.roles)) notes.push_back(std::move(note));
+  return notes;
 }
 
 }  // namespace facezip

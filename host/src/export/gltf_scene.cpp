@@ -13,7 +13,10 @@
 #include <span>
 #include <utility>
 
+#include "export/gltf_buffer.hpp"
+#include "export/gltf_tangents.hpp"
 #include "facezip/error.hpp"
+#include "facezip/geometry/float_origin.hpp"
 #include "facezip/version.hpp"
 
 namespace facezip::exporting {
@@ -36,96 +39,6 @@ tinygltf::Value toValue(const nlohmann::json& json) {
   return tinygltf::Value(object);
 }
 
-/// Collects accessors, and their bytes in one buffer.
-class Accessors {
- public:
-  explicit Accessors(tinygltf::Model& model) : model_(model) { model_.buffers.emplace_back(); }
-
-  /// values  count x components
-  int addFloats(std::span<const float> values, int components, bool with_bounds) {
-    tinygltf::Accessor accessor = describe(values, components, with_bounds);
-    accessor.bufferView = addView(std::as_bytes(values), TINYGLTF_TARGET_ARRAY_BUFFER);
-    return push(std::move(accessor));
-  }
-
-  /// Vectors of three of which most are 0: only the others are stored. The format wants one at least.
-  int addSparse(std::span<const float> values, bool with_bounds) {
-    std::vector<std::uint32_t> indices;
-    std::vector<float> kept;
-    for (std::size_t v = 0; v < values.size() / 3; ++v) {
-      const std::span<const float> vector = values.subspan(3 * v, 3);
-      if (std::ranges::all_of(vector, [](float x) { return x == 0.0f; })) continue;
-      indices.push_back(static_cast<std::uint32_t>(v));
-      kept.insert(kept.end(), vector.begin(), vector.end());
-    }
-    if (2 * kept.size() >= values.size()) return addFloats(values, 3, with_bounds);
-    if (indices.empty()) {
-      indices.push_back(0);
-      kept.assign(3, 0.0f);
-    }
-    tinygltf::Accessor accessor = describe(values, 3, with_bounds);
-    accessor.sparse.isSparse = true;
-    accessor.sparse.count = static_cast<int>(indices.size());
-    // tinygltf leaves these as they were in memory, and writes them.
-    accessor.sparse.indices.byteOffset = 0;
-    accessor.sparse.values.byteOffset = 0;
-    accessor.sparse.indices.componentType = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
-    accessor.sparse.indices.bufferView = addView(std::as_bytes(std::span(indices)), 0);
-    accessor.sparse.values.bufferView = addView(std::as_bytes(std::span(kept)), 0);
-    return push(std::move(accessor));
-  }
-
-  int addIndices(std::span<const int> indices) {
-    tinygltf::Accessor accessor;
-    accessor.componentType = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
-    accessor.type = TINYGLTF_TYPE_SCALAR;
-    accessor.count = indices.size();
-    accessor.bufferView = addView(std::as_bytes(indices), TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
-    return push(std::move(accessor));
-  }
-
- private:
-  static tinygltf::Accessor describe(std::span<const float> values, int components, bool with_bounds) {
-    tinygltf::Accessor accessor;
-    accessor.componentType = TINYGLTF_COMPONENT_TYPE_FLOAT;
-    accessor.type = components == 2 ? TINYGLTF_TYPE_VEC2 : TINYGLTF_TYPE_VEC3;
-    accessor.count = values.size() / static_cast<std::size_t>(components);
-    if (!with_bounds) return accessor;
-    const std::size_t stride = static_cast<std::size_t>(components);
-    for (std::size_t c = 0; c < stride; ++c) {
-      float least = std::numeric_limits<float>::infinity();
-      float most = -least;
-      for (std::size_t i = c; i < values.size(); i += stride) {
-        least = std::min(least, values[i]);
-        most = std::max(most, values[i]);
-      }
-      accessor.minValues.push_back(static_cast<double>(least));
-      accessor.maxValues.push_back(static_cast<double>(most));
-    }
-    return accessor;
-  }
-
-  int addView(std::span<const std::byte> bytes, int target) {
-    std::vector<unsigned char>& data = model_.buffers[0].data;
-    tinygltf::BufferView view;
-    view.buffer = 0;
-    view.byteOffset = data.size();  // all elements are of 4 bytes: always aligned
-    view.byteLength = bytes.size();
-    view.target = target;
-    const auto* begin = reinterpret_cast<const unsigned char*>(bytes.data());
-    data.insert(data.end(), begin, begin + bytes.size());
-    model_.bufferViews.push_back(std::move(view));
-    return static_cast<int>(model_.bufferViews.size()) - 1;
-  }
-
-  int push(tinygltf::Accessor accessor) {
-    model_.accessors.push_back(std::move(accessor));
-    return static_cast<int>(model_.accessors.size()) - 1;
-  }
-
-  tinygltf::Model& model_;
-};
-
 /// Rows of `matrix`, as split vertices have them.
 std::vector<float> gather(const Eigen::MatrixXd& matrix, std::span<const int> rows) {
   std::vector<float> values;
@@ -136,7 +49,7 @@ std::vector<float> gather(const Eigen::MatrixXd& matrix, std::span<const int> ro
   return values;
 }
 
-tinygltf::Primitive makePrimitive(const GltfScene& scene, Accessors& accessors) {
+tinygltf::Primitive makePrimitive(const GltfScene& scene, GltfBuffer& accessors) {
   const SplitVertices split = splitVertices(scene.neutral);
   const Eigen::MatrixX3d neutral = scene.neutral.positions * scene.metres_per_unit;
   const Eigen::MatrixX3d normals = vertexNormals(neutral, scene.neutral.triangles);
@@ -188,7 +101,7 @@ int addTexture(tinygltf::Model& model, const std::string& uri) {
 
 /// Puts textures and extras into `material`, a material of `model`.
 void setMaterial(const GltfMaterial& from, tinygltf::Material& material, tinygltf::Model& model) {
-  if (!from.base_colour_texture.empty() || !from.normal_texture.empty()) {
+  if (!(from.base_colour_texture + from.normal_texture + from.roughness_texture + from.occlusion_texture).empty()) {
     tinygltf::Sampler sampler;
     sampler.minFilter = TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR;
     sampler.magFilter = TINYGLTF_TEXTURE_FILTER_LINEAR;
@@ -199,6 +112,11 @@ void setMaterial(const GltfMaterial& from, tinygltf::Material& material, tinyglt
     material.pbrMetallicRoughness.baseColorTexture.index = addTexture(model, from.base_colour_texture);
   }
   if (!from.normal_texture.empty()) material.normalTexture.index = addTexture(model, from.normal_texture);
+  if (!from.roughness_texture.empty()) {  // whose green counts; metal, its blue, times 0
+    material.pbrMetallicRoughness.metallicRoughnessTexture.index = addTexture(model, from.roughness_texture);
+    material.pbrMetallicRoughness.roughnessFactor = 1.0;
+  }
+  if (!from.occlusion_texture.empty()) material.occlusionTexture.index = addTexture(model, from.occlusion_texture);
   if (from.extras.is_object()) material.extras = toValue(from.extras);
 }
 
@@ -207,7 +125,7 @@ tinygltf::Material makeMaterial(const GltfScene& scene, tinygltf::Model& model) 
   material.name = scene.name;
   material.pbrMetallicRoughness.metallicFactor = 0.0;
   material.pbrMetallicRoughness.roughnessFactor = 0.6;  // of skin, roughly
-  setMaterial({scene.base_colour_texture, scene.normal_texture, scene.material_extras}, material, model);
+  setMaterial({scene.base_colour_texture, scene.normal_texture, "", "", scene.material_extras}, material, model);
   return material;
 }
 
@@ -219,7 +137,14 @@ tinygltf::Mesh makeMesh(const GltfScene& scene, tinygltf::Primitive primitive) {
   mesh.weights.assign(scene.targets.size(), 0.0);
   tinygltf::Value::Array names;
   for (const MorphTarget& target : scene.targets) names.emplace_back(target.name);
-  if (!names.empty()) mesh.extras = tinygltf::Value(tinygltf::Value::Object{{"targetNames", tinygltf::Value(names)}});
+  tinygltf::Value::Object extras;
+  if (!names.empty()) extras["targetNames"] = tinygltf::Value(names);
+  if (!scene.origin.isZero(0.0)) {
+    tinygltf::Value::Array origin;
+    for (const double metres : scene.metres_per_unit* scene.origin) origin.emplace_back(metres);
+    extras["origin"] = tinygltf::Value(origin);
+  }
+  if (!extras.empty()) mesh.extras = tinygltf::Value(extras);
   return mesh;
 }
 
@@ -290,11 +215,21 @@ Eigen::MatrixX3d vertexNormals(const Eigen::MatrixX3d& positions, const Eigen::M
   return normals;
 }
 
+Eigen::RowVector3d recentre(GltfScene& scene) {
+  const Eigen::RowVector3d origin = geometry::floatOrigin(scene.neutral.positions);
+  if (origin.isZero(0.0)) return origin;
+  scene.origin += origin;
+  scene.neutral.positions.rowwise() -= origin;
+  for (MorphTarget& target : scene.targets) target.positions.rowwise() -= origin;
+  return origin;
+}
+
 void writeGltf(const fs::path& file, const GltfScene& scene) {
   tinygltf::Model model;
   model.asset.version = "2.0";
   model.asset.generator = "facezip " FACEZIP_VERSION;
-  Accessors accessors(model);
+  model.buffers.emplace_back();
+  GltfBuffer accessors(model);
   tinygltf::Primitive primitive = makePrimitive(scene, accessors);
   model.materials.push_back(makeMaterial(scene, model));
   model.meshes.push_back(makeMesh(scene, std::move(primitive)));
@@ -306,7 +241,7 @@ void writeGltf(const fs::path& file, const GltfScene& scene) {
   nodes.nodes.push_back(0);
   model.scenes.push_back(std::move(nodes));
   model.defaultScene = 0;
-
+  if (!scene.normal_texture.empty()) addTangents(model);
   save(model, file);
 }
 
@@ -321,6 +256,7 @@ void addBlendToGltf(const mesh::PackageMesh& mesh, const fs::path& to, const Glt
                                   static_cast<unsigned int>(file.size()));
   if (!loaded) throw Error(fmt::format("the mesh of the package cannot be exported: {}", error));
   setMaterial(material, model.materials.at(0), model);
+  addTangents(model);  // whatever shader draws it may have a normal map
   save(model, to);
 }
 

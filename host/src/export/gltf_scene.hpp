@@ -20,10 +20,12 @@ struct MorphTarget {
 
 /// What writeGltf() writes.
 struct GltfScene {
-  std::string name;                     ///< of mesh and node
-  geometry::TriangleMesh neutral;       ///< with or without UVs
-  std::vector<MorphTarget> targets;     ///< weights start at 0; names go to mesh.extras.targetNames, where tools look
-  double metres_per_unit = 1.0;         ///< glTF is in metres
+  std::string name;                  ///< of mesh and node
+  geometry::TriangleMesh neutral;    ///< with or without UVs
+  std::vector<MorphTarget> targets;  ///< weights start at 0; names go to mesh.extras.targetNames, where tools look
+  double metres_per_unit = 1.0;      ///< glTF is in metres
+  /// That was taken from all positions, in their unit: recorded in mesh.extras.origin, in metres, where it is not zero.
+  Eigen::RowVector3d origin = Eigen::RowVector3d::Zero();
   std::string base_colour_texture;      ///< path relative to the file, "" for none
   std::string normal_texture;           ///< likewise; tangent space, +y up, as glTF asks
   nlohmann::json material_extras = {};  ///< an object, or null for none
@@ -42,6 +44,9 @@ SplitVertices splitVertices(const geometry::TriangleMesh& mesh);
 /// direction.
 Eigen::MatrixX3d vertexNormals(const Eigen::MatrixX3d& positions, const Eigen::MatrixX3i& triangles);
 
+/// Takes geometry::floatOrigin() of the neutral from all positions, and returns it.
+Eigen::RowVector3d recentre(GltfScene& scene);
+
 /// Writes one mesh with normals, UVs (v down, as glTF has them) and morph targets of positions and normals; targets
 /// that move less than half of the vertices are stored sparsely. `.glb` gives one file; `.gltf` gives NAME.bin beside
 /// it. Textures are referred to, not copied. The files may be part of an io::StagedDirectory: nothing is staged here.
@@ -52,6 +57,8 @@ void writeGltf(const std::filesystem::path& file, const GltfScene& scene);
 struct GltfMaterial {
   std::string base_colour_texture;  ///< path relative to the file, "" for none
   std::string normal_texture;       ///< likewise
+  std::string roughness_texture;    ///< likewise
+  std::string occlusion_texture;    ///< likewise
   nlohmann::json extras;            ///< an object, or null for none
 };
 

@@ -91,6 +91,8 @@ std::string fragmentLines(const EngineMap& map) {
       return fmt::format("  NORMALMAP = clamp({}_value(UV).rgb, vec3(0.0), vec3(1.0));\n", map.id);
     case MapRole::kRoughness:
       return fmt::format("  roughness = clamp({}_value(UV).r, 0.05, 1.0);\n", map.id);
+    case MapRole::kOcclusion:
+      return fmt::format("  AO = clamp({}_value(UV).r, 0.0, 1.0);\n", map.id);
     case MapRole::kOther:
       break;
   }

@@ -6,17 +6,14 @@
 #include <span>
 #include <utility>
 
-#include "package/package_files.hpp"
-
 namespace facezip::exporting {
 namespace fs = std::filesystem;
 namespace {
 
-/// Reads an image in bytes.
+/// Reads a texture in bytes.
 class ByteReader {
  public:
-  ByteReader(const Package& package, const PackageImage& image)
-      : reader_(package::openImage(package.folder(), image.file, image.shape)) {}
+  ByteReader(const Package& package, const package::StoredTexture& texture) : reader_(package.folder(), texture) {}
 
   /// Row `row` into `out`, width x channels bytes. Rows in rising order.
   void readRow(int row, std::span<std::byte> out) {
@@ -31,25 +28,25 @@ class ByteReader {
   }
 
  private:
-  image::ImageReader reader_;
+  package::TextureReader reader_;
   std::vector<std::byte> codes_;
 };
 
 }  // namespace
 
-void copyTextures(const Package& package, const std::vector<PackageImage>& images, int columns, const fs::path& to,
-                  Progress& progress) {
-  const image::ImageShape& one = images.front().shape;
+void copyTextures(const Package& package, const std::vector<package::StoredTexture>& textures, int columns,
+                  const fs::path& to, Progress& progress) {
+  const image::ImageShape& one = textures.front().shape;
   const auto in_a_row = static_cast<std::size_t>(columns);
-  const int rows_of_images = static_cast<int>((images.size() + in_a_row - 1) / in_a_row);
-  const image::ImageShape shape{columns * one.width, rows_of_images * one.height, one.channels, SampleType::kUint8};
+  const int rows_of_textures = static_cast<int>((textures.size() + in_a_row - 1) / in_a_row);
+  const image::ImageShape shape{columns * one.width, rows_of_textures * one.height, one.channels, SampleType::kUint8};
   image::ImageWriter writer(to, shape);
   progress.stage("writing " + to.filename().string(), static_cast<std::size_t>(shape.height));
   const std::size_t bytes = shape.rowBytes() / in_a_row;
-  for (std::size_t first = 0; first < images.size(); first += in_a_row) {
+  for (std::size_t first = 0; first < textures.size(); first += in_a_row) {
     std::vector<ByteReader> readers;
-    for (std::size_t i = first; i < std::min(first + in_a_row, images.size()); ++i) {
-      readers.emplace_back(package, images[i]);
+    for (std::size_t i = first; i < std::min(first + in_a_row, textures.size()); ++i) {
+      readers.emplace_back(package, textures[i]);
     }
     std::vector<std::byte> row(shape.rowBytes());
     for (int y = 0; y < one.height; ++y) {
@@ -62,8 +59,9 @@ void copyTextures(const Package& package, const std::vector<PackageImage>& image
   writer.close();
 }
 
-void copyTexture(const Package& package, const PackageImage& image, const fs::path& to, Progress& progress) {
-  copyTextures(package, {image}, 1, to, progress);
+void copyTexture(const Package& package, const package::StoredTexture& texture, const fs::path& to,
+                 Progress& progress) {
+  copyTextures(package, {texture}, 1, to, progress);
 }
 
 }  // namespace facezip::exporting

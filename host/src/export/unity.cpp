@@ -53,6 +53,8 @@ std::string surfaceLine(const Package& package, const EngineMap& map) {
       return fmt::format("  surface.normal = facezip_unit({}.rgb);\n", value);
     case MapRole::kRoughness:
       return fmt::format("  surface.roughness = saturate({}.r);\n", value);
+    case MapRole::kOcclusion:
+      return fmt::format("  surface.occlusion = saturate({}.r);\n", value);
     case MapRole::kOther:
       break;
   }
@@ -72,11 +74,12 @@ std::string hlslFile(const Package& package, const std::vector<EngineMap>& maps)
   text += hlslFunctions(package, maps, Rows::kFromBottom, "static ");
   text += kGammaSpace;
   text +=
-      "\nstruct FaceZipSurface {\n  float3 albedo;\n  float3 normal;  // tangent space\n  float roughness;\n};\n\n"
+      "\nstruct FaceZipSurface {\n  float3 albedo;\n  float3 normal;  // tangent space\n  float roughness;\n  float "
+      "occlusion;\n};\n\n"
       "FaceZipSurface facezip_surface(float2 mesh_uv) {\n  float2 uv = float2(mesh_uv.x, 1.0 - mesh_uv.y);\n"
       "  FaceZipSurface surface;\n  surface.albedo = float3(0.5, 0.5, 0.5);\n  surface.normal = float3(0.0, 0.0, "
       "1.0);\n"
-      "  surface.roughness = 0.55;  // of skin, roughly\n";
+      "  surface.roughness = 0.55;  // of skin, roughly\n  surface.occlusion = 1.0;\n";
   for (const EngineMap& map : maps) text += surfaceLine(package, map);
   text +=
       "  return surface;\n}\n\n// For Custom Function nodes of Shader Graph, by this file: surface, and any map as it "

@@ -35,6 +35,7 @@ std::string nodeCode(const Package& package, const EngineMap& map) {
     case MapRole::kNormal:  // whose y runs down here
       return text + "return face.facezip_unit(value.rgb) * float3(1.0, -1.0, 1.0);\n";
     case MapRole::kRoughness:
+    case MapRole::kOcclusion:
       return text + "return saturate(value.r);\n";
     case MapRole::kOther:
       break;
@@ -51,6 +52,8 @@ std::pair<const char*, int> materialProperty(MapRole role) {
       return {"MP_NORMAL", 3};
     case MapRole::kRoughness:
       return {"MP_ROUGHNESS", 1};
+    case MapRole::kOcclusion:
+      return {"MP_AMBIENT_OCCLUSION", 1};
     case MapRole::kOther:
       break;
   }

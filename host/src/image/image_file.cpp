@@ -4,6 +4,7 @@
 
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <utility>
 
@@ -41,7 +42,11 @@ std::string sampleTypeName(SampleType type) {
 
 ImageReader::ImageReader(fs::path path) : path_(std::move(path)), file_(path_, "an image") {
   input_ = openPng(path_, file_);
-  if (!input_) input_ = anyFormat().open(path_, file_);
+  if (!input_) {
+    input_ = anyFormat().open(path_, file_);
+  } else if (const std::vector<std::byte> exif = exifOfPng(file_); !exif.empty()) {
+    requireUpright(path_, anyFormat().orientationOf(exif));
+  }
   shape_ = input_->shape();
 }
 
@@ -58,6 +63,8 @@ ImageReader::ImageReader(fs::path path, InputFile file) : path_(std::move(path))
   }
   shape_ = input_->shape();
 }
+
+std::string ImageReader::colours() const { return input_->colours(); }
 
 ImageReader::~ImageReader() = default;
 ImageReader::ImageReader(ImageReader&&) noexcept = default;

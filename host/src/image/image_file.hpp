@@ -45,7 +45,8 @@ struct ImageShape {
 class ImageReader {
  public:
   /// Opens `path`. Throws InputError if it is missing, no regular file, unreadable or of a kind that OpenImageIO does
-  /// not know. The file stays open: what is renamed over it later is not read.
+  /// not know; and if its samples are not what they seem: an orientation tag that turns them, further images in the
+  /// file, channels beside the colours. The file stays open: what is renamed over it later is not read.
   explicit ImageReader(std::filesystem::path path);
   /// Reads an image of a package, by the reader that its name asks for and no other: PNG whose samples are stored as
   /// they are, or EXR. It may come from anywhere, and claim any size: memory is not taken by it before rows are read.
@@ -58,6 +59,9 @@ class ImageReader {
   const ImageShape& shape() const { return shape_; }
   const std::filesystem::path& path() const { return path_; }
   const InputFile& file() const { return file_; }
+  /// What the file says of its colours: "sRGB", "linear", a gamma, an ICC profile by name; "" where it says nothing.
+  /// Samples are never converted by it.
+  std::string colours() const;
 
   /// Reads rows [begin, end) into `out` (row-major, channels interleaved, exactly (end - begin) * rowBytes()).
   /// Bands in rising order are read once; going back re-reads compressed files from their start.

@@ -9,6 +9,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "image/image_file.hpp"
 
@@ -20,6 +21,8 @@ class SampleInput {
   virtual ~SampleInput() = default;
   virtual ImageShape shape() const = 0;
   virtual void readRows(int begin, int end, std::span<std::byte> out) = 0;
+  /// What the file says of its colours: ImageReader::colours().
+  virtual std::string colours() const = 0;
 };
 
 /// One image, opened for writing; ImageWriter says what its functions do.
@@ -36,6 +39,16 @@ class SampleOutput {
 /// file  must outlive what is returned
 std::unique_ptr<SampleInput> openPng(const std::filesystem::path& path, const InputFile& file);
 
+/// The eXIf chunk of a PNG file, which may stand behind the samples too; empty where there is none. Nothing of it is
+/// checked.
+std::vector<std::byte> exifOfPng(const InputFile& file);
+
+/// "ICC profile NAME", with what tells it from others of that name.
+std::string profileName(const std::string& name, std::span<const std::byte> profile);
+
+/// Throws InputError for an orientation tag (EXIF, TIFF) that asks for anything but the rows as they are stored.
+void requireUpright(const std::filesystem::path& path, int orientation);
+
 /// Creates a PNG file. Null for names that do not end in .png.
 /// Throws OutputError.
 std::unique_ptr<SampleOutput> createPng(const std::filesystem::path& path, const ImageShape& shape,
@@ -49,6 +62,8 @@ class AnyFormat {
   /// file  is read; must outlive what is returned
   /// Throws InputError.
   virtual std::unique_ptr<SampleInput> open(const std::filesystem::path& path, const InputFile& file) = 0;
+  /// The orientation that an EXIF block asks for, 1 to 8; 1 where it says nothing.
+  virtual int orientationOf(std::span<const std::byte> exif) = 0;
   /// An EXR file as packages hold them, and no other: one flat image in rows. path  for messages. Throws InputError.
   virtual std::unique_ptr<SampleInput> openExr(const std::filesystem::path& path, const InputFile& file) = 0;
   /// path, shape  that requireFormat() lets pass. Throws OutputError.

@@ -1,12 +1,17 @@
 // oiio_file.cpp - images of every format that OpenImageIO knows. The one file of the library that sees OpenImageIO.
 #include <OpenImageIO/imageio.h>
+#include <OpenImageIO/tiffutils.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <sstream>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "facezip/error.hpp"
 #include "image/image_format.hpp"
@@ -100,6 +105,54 @@ std::unique_ptr<OIIO::ImageInput> openExrInput(const fs::path& path, const std::
   return input;
 }
 
+/// Behind the first image: pages of a TIFF, parts of an EXR, frames. A Photoshop file's first image is all of its
+/// layers.
+void requireOneImage(const fs::path& path, OIIO::ImageInput& input) {
+  if (std::string_view(input.format_name()) == "psd") return;
+  if (input.seek_subimage(1, 0)) {
+    throw InputError(
+        {path.string(), "", "one image", "several (pages, parts or frames)", "export the one that is meant, alone"});
+  }
+  static_cast<void>(input.geterror());  // that there is no other
+  if (!input.seek_subimage(0, 0)) {
+    throw InputError({path.string(), "", "an image that OpenImageIO reads", reason(input.geterror()), ""});
+  }
+}
+
+/// A channel's name without its layer's.
+std::string plainChannel(const std::string& name) {
+  std::string plain = name.substr(name.rfind('.') + 1);
+  std::ranges::transform(plain, plain.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return plain;
+}
+
+/// Renderers put depth, identifiers and the like beside colours: as a fourth channel they would pass for alpha.
+void requireNoFurtherChannels(const fs::path& path, const OIIO::ImageSpec& spec) {
+  std::vector<std::string> names;
+  for (const std::string& name : spec.channelnames) names.push_back(plainChannel(name));
+  const auto has = [&names](const char* name) { return std::ranges::find(names, name) != names.end(); };
+  const bool colours = has("R") && has("G") && has("B");
+  const auto isFurther = [&](const std::string& name) {
+    if (colours) return name != "R" && name != "G" && name != "B" && name != "A" && name != "ALPHA";
+    // Luminance with chroma at half the size, which OpenImageIO gives as it is; depth beside anything but X and Y.
+    return name == "RY" || name == "BY" || (names.size() > 1 && !has("X") && (name == "Z" || name == "DEPTH"));
+  };
+  if (std::ranges::none_of(names, isFurther)) return;
+  throw InputError({path.string(), "channels", "R, G, B and perhaps A, or channels of one kind",
+                    fmt::format("{}", fmt::join(spec.channelnames, ", ")), "export the channels of the map alone"});
+}
+
+std::string coloursOf(const OIIO::ImageSpec& spec) {
+  const OIIO::ParamValue* profile = spec.find_attribute("ICCProfile");
+  if (profile != nullptr) {
+    return profileName(
+        std::string(spec.get_string_attribute("ICCProfile:profile_description", "without a name")),
+        std::span(static_cast<const std::byte*>(profile->data()), static_cast<std::size_t>(profile->datasize())));
+  }
+  const std::string name(spec.get_string_attribute("oiio:ColorSpace"));
+  return name == "Linear" ? "linear" : name;
+}
+
 class OiioInput : public SampleInput {
  public:
   OiioInput(const fs::path& path, const InputFile& file, std::unique_ptr<OIIO::ImageInput> opened)
@@ -109,6 +162,8 @@ class OiioInput : public SampleInput {
     if (spec.depth > 1 || spec.deep) {
       throw InputError({path_.string(), "", "a flat two-dimensional image", "a volume or deep image", ""});
     }
+    requireUpright(path_, spec.get_int_attribute("Orientation", 1));
+    requireNoFurtherChannels(path_, spec);
     constexpr int kSeparated = 5;  // which OpenImageIO converts to RGB
     if (spec.get_int_attribute("tiff:PhotometricInterpretation") == kSeparated) {
       throw InputError(
@@ -126,6 +181,7 @@ class OiioInput : public SampleInput {
   }
 
   ImageShape shape() const override { return shape_; }
+  std::string colours() const override { return coloursOf(file_->spec()); }
 
   void readRows(int begin, int end, std::span<std::byte> out) override {
     const OIIO::ImageSpec& spec = file_->spec();
@@ -207,7 +263,15 @@ class OiioOutput : public SampleOutput {
 class OpenImageIo : public AnyFormat {
  public:
   std::unique_ptr<SampleInput> open(const fs::path& path, const InputFile& file) override {
-    return std::make_unique<OiioInput>(path, file, openInput(path, openName(file)));
+    std::unique_ptr<OIIO::ImageInput> input = openInput(path, openName(file));
+    requireOneImage(path, *input);
+    return std::make_unique<OiioInput>(path, file, std::move(input));
+  }
+
+  int orientationOf(std::span<const std::byte> exif) override {
+    OIIO::ImageSpec spec;
+    const std::string_view bytes(reinterpret_cast<const char*>(exif.data()), exif.size());
+    return OIIO::decode_exif(bytes, spec) ? spec.get_int_attribute("Orientation", 1) : 1;
   }
 
   std::unique_ptr<SampleInput> openExr(const fs::path& path, const InputFile& file) override {

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "facezip/error.hpp"
@@ -123,6 +125,21 @@ constexpr std::uint32_t kMostTexels = 1 << 16;
 constexpr std::size_t kMostChunkBytes = std::size_t{16} << 20;
 constexpr std::size_t kMostAllChunkBytes = std::size_t{64} << 20;
 
+/// What one of the chunks says of which libspng keeps one: others would be in conflict with it.
+std::string coloursOf(spng_ctx* context) {
+  spng_iccp profile;
+  if (spng_get_iccp(context, &profile) == 0) {
+    return profileName(profile.profile_name, std::as_bytes(std::span(profile.profile, profile.profile_len)));
+  }
+  std::uint8_t intent = 0;
+  double gamma = 0.0;
+  if (spng_get_srgb(context, &intent) == 0) return "sRGB";
+  if (spng_get_gama(context, &gamma) != 0) return "";
+  constexpr double kNearly = 0.001;  // files hold five digits, and writers round 1 / 2.2 either way
+  if (std::abs(gamma - 1.0) < kNearly) return "linear";
+  return std::abs(gamma - 1.0 / 2.2) < kNearly ? "sRGB" : fmt::format("gamma {:.3g}", gamma);
+}
+
 class PngInput : public SampleInput {
  public:
   /// file  must outlive this object
@@ -146,12 +163,14 @@ class PngInput : public SampleInput {
     }
     shape_ = {static_cast<int>(header.width), static_cast<int>(header.height), channelsOf(header.color_type),
               header.bit_depth == 16 ? SampleType::kUint16 : SampleType::kUint8};
+    colours_ = coloursOf(context_.get());
     next_row_ = 0;
     decoding_ = false;
     return shape_.channels > 0;
   }
 
   ImageShape shape() const override { return shape_; }
+  std::string colours() const override { return colours_; }
 
   void readRows(int begin, int end, std::span<std::byte> out) override {
     if (begin < next_row_ && !open()) damaged(begin, end, "the file changed");
@@ -196,6 +215,7 @@ class PngInput : public SampleInput {
   Source source_;
   Context context_;  // reads source_: goes before it
   ImageShape shape_;
+  std::string colours_;
   bool decoding_ = false;
   int next_row_ = 0;
   std::vector<std::byte> unused_row_;
@@ -264,6 +284,30 @@ class PngOutput : public SampleOutput {
 std::unique_ptr<SampleInput> openPng(const fs::path& path, const InputFile& file) {
   auto input = std::make_unique<PngInput>(path, file);
   return input->open() ? std::move(input) : nullptr;
+}
+
+std::vector<std::byte> exifOfPng(const InputFile& file) {
+  constexpr std::size_t kSignatureBytes = 8, kHeadBytes = 8, kCheckBytes = 4;
+  const auto read = [&file](std::span<std::byte> out, std::size_t at) {
+    ssize_t got = 0;
+    do {
+      got = ::pread(file.descriptor(), out.data(), out.size(), static_cast<off_t>(at));
+    } while (got < 0 && errno == EINTR);
+    return got == static_cast<ssize_t>(out.size());
+  };
+  std::array<std::byte, kHeadBytes> head{};
+  for (std::size_t at = kSignatureBytes; read(head, at);) {
+    std::size_t length = 0;
+    for (std::size_t i = 0; i < 4; ++i) length = length << 8 | std::to_integer<std::size_t>(head[i]);
+    const std::string_view type(reinterpret_cast<const char*>(head.data()) + 4, 4);
+    if (type == "IEND") break;
+    if (type == "eXIf") {
+      std::vector<std::byte> exif(std::min(length, kMostChunkBytes));
+      if (read(exif, at + kHeadBytes)) return exif;
+    }
+    at += kHeadBytes + length + kCheckBytes;
+  }
+  return {};
 }
 
 std::unique_ptr<SampleOutput> createPng(const fs::path& path, const ImageShape& shape,

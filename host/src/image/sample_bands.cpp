@@ -44,6 +44,22 @@ SampleBands::SampleBands(const CaptureMap& map, const std::vector<std::string>& 
   }
 }
 
+std::string SampleBands::mixedColours() const {
+  const std::string expected = readers_.front().colours();
+  const auto said = [](const std::string& colours) { return colours.empty() ? "nothing" : colours; };
+  std::string first;
+  int others = 0;
+  for (const ImageReader& reader : readers_) {
+    const std::string colours = reader.colours();
+    if (colours == expected) continue;
+    if (others++ == 0) first = fmt::format("{} says {}", reader.path().filename().string(), said(colours));
+  }
+  if (others == 0) return "";
+  if (others > 1) first += fmt::format(", {} more are no {} either", others - 1, said(expected));
+  return fmt::format("map \"{}\": of its colours {} says {}, {}: samples are taken as they are, without conversion",
+                     map_.name, readers_.front().path().filename().string(), said(expected), first);
+}
+
 std::size_t SampleBands::bandBytes(int rows) const {
   return readers_.size() * static_cast<std::size_t>(rows) * shape_.rowBytes();
 }

@@ -34,6 +34,9 @@ class SampleBands {
   SampleBands(const CaptureMap& map, const std::vector<std::string>& names);
 
   const ImageShape& shape() const { return shape_; }
+  /// "" where all textures say the same of their colours (ImageReader::colours()), else a sentence that says who
+  /// differs.
+  std::string mixedColours() const;
   int expressions() const { return static_cast<int>(map_.expressions.size()); }
 
   /// Bytes of all textures, decoded.

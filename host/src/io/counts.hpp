@@ -29,9 +29,7 @@ constexpr Value roundUp(Value value, Step step) {
 }
 
 /// value / step, rounded down for negative values too. step  above 0
-constexpr int divideDown(int value, int step) {
-  return value >= 0 ? value / step : -((step - 1 - value) / step);
-}
+constexpr int divideDown(int value, int step) { return value >= 0 ? value / step : -((step - 1 - value) / step); }
 
 /// Row-major places in an array, the outermost axis first (a small std::mdspan, which gcc 12 has not):
 ///   const Layout shape(rows, columns, channels);   values[shape(row, column, channel)]
@@ -39,8 +37,7 @@ template <std::size_t kAxes>
 class Layout {
  public:
   template <std::integral... Extents>
-    requires(sizeof...(Extents) == kAxes)
-  constexpr explicit Layout(Extents... extents) : extents_{toSize(extents)...} {}
+  requires(sizeof...(Extents) == kAxes) constexpr explicit Layout(Extents... extents) : extents_{toSize(extents)...} {}
 
   /// Entries of the whole array.
   constexpr std::size_t size() const {
@@ -50,8 +47,7 @@ class Layout {
   }
 
   template <std::integral... Indices>
-    requires(sizeof...(Indices) == kAxes)
-  constexpr std::size_t operator()(Indices... indices) const {
+  requires(sizeof...(Indices) == kAxes) constexpr std::size_t operator()(Indices... indices) const {
     std::size_t place = 0;
     std::size_t axis = 0;
     const auto descend = [&](std::size_t index) {

@@ -4,33 +4,32 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <utility>
 #include <vector>
 
 #include "mesh/package_mesh.hpp"
 #include "package/guides.hpp"
-#include "package/package_files.hpp"
+#include "package/package_textures.hpp"
 #include "package/weight_atlas.hpp"
 
 namespace facezip {
 namespace {
 
-std::vector<std::pair<std::string, image::ImageShape>> imagesOf(const PackageDescription& description) {
-  std::vector<std::pair<std::string, image::ImageShape>> images;
+std::vector<package::StoredTexture> texturesOf(const PackageDescription& description) {
+  std::vector<package::StoredTexture> textures;
   for (const PackageWeights& weights : description.weights) {
     for (std::size_t file = 0; file < weights.files.size(); ++file) {
-      images.emplace_back(weights.files[file],
-                          package::atlasShape(weights, description.differences, static_cast<int>(file)));
+      textures.push_back({weights.files[file], std::nullopt,
+                          package::atlasShape(weights, description.differences, static_cast<int>(file))});
     }
   }
   for (const PackageMap& map : description.maps) {
-    images.emplace_back(map.neutral_file, package::neutralShape(map));
-    for (const PackageDifference& difference : map.differences) {
-      images.emplace_back(difference.file, package::differenceShape(map));
-    }
+    textures.push_back(package::neutralTexture(map));
+    for (int i = 0; i < description.differences; ++i) textures.push_back(package::differenceTexture(map, i));
   }
-  if (description.masks) images.emplace_back(description.masks->file, package::masksShape(*description.masks));
-  return images;
+  if (description.masks) {
+    textures.push_back({description.masks->file, std::nullopt, package::masksShape(*description.masks)});
+  }
+  return textures;
 }
 
 /// Rows that take about a megabyte: enough for a decoder to be busy with.
@@ -39,10 +38,10 @@ int rowsAtOnce(const image::ImageShape& shape) {
   return static_cast<int>(std::clamp<std::size_t>(kBytesAtOnce / shape.rowBytes(), 1, 64));
 }
 
-void readAll(const Package& package, const std::string& file, const image::ImageShape& shape,
-             const Progress& progress) {
+void readAll(const Package& package, const package::StoredTexture& texture, const Progress& progress) {
+  const image::ImageShape& shape = texture.shape;
   const int rows_at_once = rowsAtOnce(shape);
-  image::ImageReader reader = package::openImage(package.folder(), file, shape);
+  package::TextureReader reader(package.folder(), texture);
   std::vector<std::byte> rows;
   for (int begin = 0; begin < shape.height; begin += rows_at_once) {
     progress.checkCancelled();
@@ -52,16 +51,20 @@ void readAll(const Package& package, const std::string& file, const image::Image
   }
 }
 
-/// What reading an image takes. EXR comes in blocks of up to 256 rows, packed and unpacked.
-std::uint64_t bytesToRead(const image::ImageShape& shape) {
-  const int block = shape.type == SampleType::kFloat32 ? 2 * 256 : 4;
+/// What reading a texture takes. EXR comes in blocks of up to 256 rows, packed and unpacked; blocks of up to 12 rows
+/// are decoded to floats of four channels.
+std::uint64_t bytesToRead(const package::StoredTexture& texture) {
+  const image::ImageShape& shape = texture.shape;
+  const int block = texture.format                       ? 16 * (rowsAtOnce(shape) + 2 * 12)
+                    : shape.type == SampleType::kFloat32 ? 2 * 256
+                                                         : 4;
   return (static_cast<std::uint64_t>(rowsAtOnce(shape)) + static_cast<std::uint64_t>(block)) * shape.rowBytes();
 }
 
-/// As many images side by side as fit.
-int imagesAtOnce(const std::vector<std::pair<std::string, image::ImageShape>>& images, std::uint64_t memory_bytes) {
+/// As many textures side by side as fit.
+int texturesAtOnce(const std::vector<package::StoredTexture>& textures, std::uint64_t memory_bytes) {
   std::uint64_t most = 1;
-  for (const auto& [file, shape] : images) most = std::max(most, bytesToRead(shape));
+  for (const package::StoredTexture& texture : textures) most = std::max(most, bytesToRead(texture));
   const auto threads = static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency());
   return static_cast<int>(std::clamp<std::uint64_t>(memory_bytes / most, 1, threads));
 }
@@ -75,11 +78,10 @@ void checkMesh(const Package& package, std::uint64_t memory_bytes) {
 void checkTexels(const Package& package, Progress& progress, std::uint64_t memory_bytes) {
   progress.stage("reading the mesh", 0);
   checkMesh(package, memory_bytes);
-  const auto images = imagesOf(package.description());
+  const std::vector<package::StoredTexture> textures = texturesOf(package.description());
   progress.stage("reading textures", 0);
-  tbb::task_arena(imagesAtOnce(images, memory_bytes)).execute([&] {
-    tbb::parallel_for(std::size_t{0}, images.size(),
-                      [&](std::size_t i) { readAll(package, images[i].first, images[i].second, progress); });
+  tbb::task_arena(texturesAtOnce(textures, memory_bytes)).execute([&] {
+    tbb::parallel_for(std::size_t{0}, textures.size(), [&](std::size_t i) { readAll(package, textures[i], progress); });
   });
 }
 

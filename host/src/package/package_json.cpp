@@ -230,7 +230,8 @@ void requireKnownVersion(const JsonField& document) {
 
 bool hasBlocks(const PackageDescription& description) {
   return std::ranges::any_of(description.maps, [](const PackageMap& map) {
-    return map.neutral_format || std::ranges::any_of(map.differences, [](const auto& d) { return d.format.has_value(); });
+    return map.neutral_format ||
+           std::ranges::any_of(map.differences, [](const auto& d) { return d.format.has_value(); });
   });
 }
 

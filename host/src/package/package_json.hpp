@@ -10,8 +10,8 @@ namespace facezip::package {
 class JsonField;
 
 inline constexpr char kDescriptionFile[] = "package.json";
-inline constexpr int kFormatVersion = 3;        ///< newest, of packages with textures in blocks
-inline constexpr int kImageFormatVersion = 2;   ///< of all others: older facezips read them
+inline constexpr int kFormatVersion = 3;       ///< newest, of packages with textures in blocks
+inline constexpr int kImageFormatVersion = 2;  ///< of all others: older facezips read them
 inline constexpr int kMaxExpressions = 65536;  ///< N
 inline constexpr int kMaxDifferences = 8;      ///< C
 inline constexpr int kMaxSide = 65536;         ///< texels along a side of a map

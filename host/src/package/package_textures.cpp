@@ -105,8 +105,8 @@ void TextureReader::readBlocks(int begin, int end, std::span<std::byte> out) {
   const std::size_t row_samples = toSize(shape_.width, shape_.channels);
   texels_.resize(toSize(rows) * row_samples);
   decoder_->decode(shape_.width, rows, block_rows_, std::span(texels_));
-  const auto wanted = std::span(texels_).subspan(toSize(begin - first * side) * row_samples,
-                                                 toSize(end - begin) * row_samples);
+  const auto wanted =
+      std::span(texels_).subspan(toSize(begin - first * side) * row_samples, toSize(end - begin) * row_samples);
   store(wanted, shape_.type, out);
 }
 

@@ -15,11 +15,11 @@ namespace facezip::package {
 class PackageWriter {
  public:
   /// Creates every image; textures in blocks (those that have a format) are the caller's to write, under the names
-  /// that description() gives them. From the caller come: name, expressions, differences (C), scale/offset of each set of
-  /// weights, method_json and of each map name, width, height, channels, sample_type, colour_space, weight_set,
-  /// weight_scale, metric_weight, difference_bits, formats of blocks and C differences with scale/offset. File names, atlas layouts and
-  /// the generator are filled in here. Throws InputError for a description that Package::open would refuse, and when a
-  /// weight atlas would pass 16384 cells along a side; OutputError.
+  /// that description() gives them. From the caller come: name, expressions, differences (C), scale/offset of each set
+  /// of weights, method_json and of each map name, width, height, channels, sample_type, colour_space, weight_set,
+  /// weight_scale, metric_weight, difference_bits, formats of blocks and C differences with scale/offset. File names,
+  /// atlas layouts and the generator are filled in here. Throws InputError for a description that Package::open would
+  /// refuse, and when a weight atlas would pass 16384 cells along a side; OutputError.
   PackageWriter(PackageDescription description, std::filesystem::path directory);
   ~PackageWriter();
 

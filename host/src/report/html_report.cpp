@@ -18,6 +18,7 @@
 #include "package/json_field.hpp"
 #include "package/package_files.hpp"
 #include "package/package_json.hpp"
+#include "package/package_textures.hpp"
 #include "package/weight_atlas.hpp"
 #include "report/report_page.hpp"
 
@@ -62,7 +63,7 @@ image::Image errorPicture(const ErrorPictures& pictures, const std::vector<float
 
 /// An image of the package at no more than kLargestThumbnail a side: means of step x step texels, of fewer where a side
 /// is shorter than that. Opaque: four channels become three. Read some rows at a time: it may be of any size.
-image::Image thumbnail(image::ImageReader reader) {
+image::Image thumbnail(package::TextureReader reader) {
   const image::ImageShape& shape = reader.shape();
   const int step = (std::max(shape.width, shape.height) - 1) / kLargestThumbnail + 1;
   const int width = std::max(1, shape.width / step);
@@ -132,21 +133,20 @@ json picturesJson(const Package& package, const Evaluation& evaluation, const Pi
   for (const ErrorPictures& collected : evaluation.pictures) {
     images["maps"].push_back(comparisonJson(collected, pictures));
   }
-  const auto add = [&](const char* where, const std::string& title, const std::string& file,
-                       const image::ImageShape& shape) {
+  const auto add = [&](const char* where, const std::string& title, const package::StoredTexture& texture) {
     images[where].push_back(
-        {{"title", title}, {"src", pictures.uri(thumbnail(package::openImage(package.folder(), file, shape)))}});
+        {{"title", title}, {"src", pictures.uri(thumbnail(package::TextureReader(package.folder(), texture)))}});
   };
   for (const PackageMap& map : package.maps()) {
-    add("textures", map.name + ": neutral", map.neutral_file, package::neutralShape(map));
-    for (std::size_t i = 0; i < map.differences.size(); ++i) {
-      add("textures", fmt::format("{}: difference {}", map.name, i), map.differences[i].file,
-          package::differenceShape(map));
+    add("textures", map.name + ": neutral", package::neutralTexture(map));
+    for (int i = 0; i < package.differences(); ++i) {
+      add("textures", fmt::format("{}: difference {}", map.name, i), package::differenceTexture(map, i));
     }
   }
   for (const PackageWeights& set : package.weightSets()) {
     for (std::size_t f = 0; f < set.files.size(); ++f) {
-      add("weights", set.files[f], set.files[f], package::atlasShape(set, package.differences(), static_cast<int>(f)));
+      const auto shape = package::atlasShape(set, package.differences(), static_cast<int>(f));
+      add("weights", set.files[f], {set.files[f], std::nullopt, shape});
     }
   }
   if (package.description().masks) images["masks"] = pictures.uri(maskPicture(package));

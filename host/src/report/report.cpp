@@ -139,6 +139,7 @@ std::string toJson(const CompressReport& report) {
                                     {"rmse", point.rmse}});
   }
   for (const auto& [map, rmse] : report.rmse) object["rmse"][map] = rmse;
+  if (report.pooled_rmse) object["pooled_rmse"] = *report.pooled_rmse;
   object["seconds"]["waiting for textures"] = report.wait_seconds;
   object["seconds"]["decoding textures"] = report.decode_seconds;
   return object.dump(2) + "\n";

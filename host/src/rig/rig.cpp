@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "compress/stage_clock.hpp"
+#include "facezip/geometry/float_origin.hpp"
 #include "facezip/package.hpp"
 #include "package/footprint.hpp"
 #include "package/safe_names.hpp"
@@ -17,6 +18,7 @@
 #include "rig/rig_json.hpp"
 #include "rig/rig_meshes.hpp"
 #include "rig/rig_weights.hpp"
+#include "rig/strain_codes.hpp"
 #include "rig/weight_guess.hpp"
 
 namespace facezip {
@@ -69,6 +71,7 @@ RigHeadMotion headMotionOf(const geometry::Similarity& motion, const Eigen::Matr
 }
 
 void requireSaneOptions(const RigOptions& options) {
+  textureSolveOf(options);
   if (options.fit.iterations < 0 || options.fit.iterations > 1000) {
     throw InputError({"--iterations", "", "0 to 1000", fmt::format("{}", options.fit.iterations), ""});
   }
@@ -186,29 +189,42 @@ ShapeTextures addShapeTextures(const Capture& capture, const fs::path& directory
   const Package package = Package::open(directory);
   const compress::Face face = compress::readFace(capture, options.compress.region);
   const PackageMaps maps = openPackageMaps(capture, face, package);
-  const SkinFeatures features(inputs.subject.neutral, rig.examples, rig);
-  ShapeTextures textures{chooseSolve(options, rig.weights, features, maps, progress), rankOf(rig.weights)};
+  ShapeTextures textures;
+  textures.rank = rankOf(rig.weights);
+  std::optional<SkinFeatures> features;
+  SolveSet solve = [&](const Package& of, int set, const compress::GridMap& map) {
+    return strainShapes(of, set, inputs.subject.neutral, rig, map);
+  };
+  if (textureSolveOf(options) != TextureSolve::kStrain) {
+    features.emplace(inputs.subject.neutral, rig.examples, rig);
+    textures.chosen = chooseSolve(options, rig.weights, *features, maps, progress);
+    solve = [&](const Package& of, int set, const compress::GridMap& map) {
+      return solveShapes(of, set, textures.chosen.solver, *features, map, progress);
+    };
+  }
   if (textures.rank < static_cast<int>(capture.expressions.size())) {
     progress.note(
         fmt::format("the expressions' weights have rank {}, not {}: some repeat or combine others; of twins, "
                     "give one",
                     textures.rank, capture.expressions.size()));
   }
-  const double clamped = addShapeWeights(directory, inputs.package_expressions, inputs.rig_template.names,
-                                         textures.chosen.solver, features, maps, progress);
-  if (clamped > kMuchClamped) {
+  const double clamped = addShapeWeights(directory, inputs.package_expressions, inputs.rig_template.names, solve, maps);
+  const bool pseudo_inverse = textureSolveOf(options) == TextureSolve::kPseudoInverse;
+  if (clamped > (pseudo_inverse ? 0.0 : kMuchClamped)) {
     progress.note(
-        fmt::format("{:.1f} % of the shapes' weights lie beyond those of the captured expressions and are "
-                    "clamped: the expressions hardly tell some shapes apart",
-                    100.0 * clamped));
+        fmt::format("{:.2g} % of the shapes' weights lie far beyond those of the captured expressions and are "
+                    "clamped{}: the expressions hardly tell some shapes apart",
+                    100.0 * clamped, pseudo_inverse ? ", so that Eq. 10 does not hold there" : ""));
   }
   return textures;
 }
 
 void reportTextures(const ShapeTextures& textures, const RigOptions& options, RigReport& report) {
   report.texture_rank = textures.rank;
-  report.texture_solve = nameOf(options.texture_solve);
-  report.texture_damping = options.texture_solve == TextureSolve::kPseudoInverse ? 0.0 : textures.chosen.solver.damping;
+  const TextureSolve solve = textureSolveOf(options);
+  const bool damped = solve == TextureSolve::kLocal || solve == TextureSolve::kDamped;
+  report.texture_solve = nameOf(solve);
+  report.texture_damping = damped ? textures.chosen.solver.damping : 0.0;
   report.strain_share = textures.chosen.solver.strain_share;
   report.left_out_rmse = textures.chosen.left_out_rmse;
   report.left_out_nothing = textures.chosen.left_out_nothing;
@@ -216,9 +232,11 @@ void reportTextures(const ShapeTextures& textures, const RigOptions& options, Ri
 
 /// shapes/, rig.gltf and mesh.glb.
 void writeMeshes(const RigInputs& inputs, const RigFace& face, const geometry::ExampleRig& rig,
-                 const std::string& title, bool package_mesh, const fs::path& directory) {
+                 const std::string& title, bool package_mesh, const fs::path& directory, Progress& progress) {
   const std::vector<std::string>& shapes = inputs.rig_template.names;
   const Package package = Package::open(directory);
+  const Eigen::RowVector3d origin = geometry::floatOrigin(face.neutral.positions);
+  if (!origin.isZero(0.0)) progress.note(geometry::originNote(origin, "rig.gltf"));
   writeFace(directory, face, shapes, title, geometry::metresPerUnit(inputs.subject.unit), package.maps());
   if (package_mesh) writePackageMesh(directory, inputs.subject, rig, inputs.package_expressions, shapes, title);
 }
@@ -265,7 +283,7 @@ RigReport rigCapture(const Capture& capture, const fs::path& template_directory,
   const RigFace face = assembleFace(inputs.subject, inputs.rig_template, rig);
   report.vertices = static_cast<int>(face.neutral.positions.rows());
   report.parts = face.parts;
-  writeMeshes(inputs, face, rig, capture.name, options.compress.mesh, staged.path());
+  writeMeshes(inputs, face, rig, capture.name, options.compress.mesh, staged.path(), progress);
   io::writeTextFile(staged.path() / kRigFile, rigJson(report, inputs.subject.millimetresPerUnit()));
   clock.book("writing shapes");
   staged.commit();

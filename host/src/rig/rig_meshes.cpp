@@ -7,6 +7,7 @@
 
 #include "compress/face.hpp"
 #include "export/gltf_scene.hpp"
+#include "export/map_roles.hpp"
 #include "facezip/geometry/obj_io.hpp"
 #include "facezip/geometry/part_transfer.hpp"
 #include "facezip/package.hpp"
@@ -57,13 +58,12 @@ geometry::TriangleMesh wholeNeutral(const geometry::TriangleMesh& skin, const ge
   return mesh;
 }
 
-std::string neutralOf(const std::vector<PackageMap>& maps, const std::vector<std::string>& names) {
-  for (const std::string& name : names) {
-    for (const PackageMap& map : maps) {
-      if (map.name == name && map.sample_type != SampleType::kFloat32) return map.neutral_file;
-    }
-  }
-  return "";
+std::string neutralOf(const std::vector<PackageMap>& maps, exporting::MapRole role) {
+  const std::vector<exporting::MapRole> roles = exporting::rolesOf(maps);
+  const auto found = std::ranges::find(roles, role);
+  if (found == roles.end()) return "";
+  const std::string& file = maps[static_cast<std::size_t>(found - roles.begin())].neutral_file;
+  return file.ends_with(".png") ? file : "";  // glTF takes no other
 }
 
 }  // namespace
@@ -114,8 +114,9 @@ void writeFace(const std::filesystem::path& directory, const RigFace& face, cons
   scene.neutral = face.neutral;
   for (std::size_t m = 0; m < names.size(); ++m) scene.targets.push_back({names[m], face.shapes[m]});
   scene.metres_per_unit = metres_per_unit;
-  scene.base_colour_texture = neutralOf(maps, {"albedo", "diffuse", "basecolor", "base_color", "color", "colour"});
-  scene.normal_texture = neutralOf(maps, {"normal", "normals"});
+  scene.base_colour_texture = neutralOf(maps, exporting::MapRole::kAlbedo);
+  scene.normal_texture = neutralOf(maps, exporting::MapRole::kNormal);
+  exporting::recentre(scene);
   exporting::writeGltf(directory / "rig.gltf", scene);
 }
 
@@ -132,6 +133,7 @@ void writePackageMesh(const std::filesystem::path& directory, const RigSubject& 
   for (std::size_t m = 0; m < shapes.size(); ++m) {
     scene.targets.push_back({shapes[m], subject.neutral.positions + rig.shapes[m]});
   }
+  exporting::recentre(scene);
   exporting::writeGltf(directory / package::kMeshFile, scene);
 }
 

@@ -43,8 +43,8 @@ PackageMaps openPackageMaps(const Capture& capture, const compress::Face& face, 
 ChosenSolve chooseSolve(const RigOptions& options, const Eigen::MatrixXd& weights, const SkinFeatures& features,
                         const PackageMaps& maps, Progress& progress) {
   ChosenSolve chosen;
-  chosen.solver = {options.texture_solve, weights, options.texture_damping.value_or(0.3), 0.0};
-  if (options.texture_solve != TextureSolve::kLocal) return chosen;
+  chosen.solver = {textureSolveOf(options), weights, options.texture_damping.value_or(0.3), 0.0};
+  if (chosen.solver.method != TextureSolve::kLocal) return chosen;
   const compress::GridMap& map = maps.reference();
   const std::vector<raster::TexelSample> samples = raster::cellSamples(*map.map->raster, map.weight_scale);
   const int columns = (map.map->samples->shape().width + map.weight_scale - 1) / map.weight_scale;
@@ -62,15 +62,14 @@ ChosenSolve chooseSolve(const RigOptions& options, const Eigen::MatrixXd& weight
 }
 
 double addShapeWeights(const fs::path& directory, const std::vector<std::string>& captured,
-                       const std::vector<std::string>& shapes, const TextureSolver& solver,
-                       const SkinFeatures& features, const PackageMaps& maps, Progress& progress) {
+                       const std::vector<std::string>& shapes, const SolveSet& solve, const PackageMaps& maps) {
   const Package package = Package::open(directory);
   PackageDescription description = package.description();
   description.expressions = captured;
   description.expressions.insert(description.expressions.end(), shapes.begin(), shapes.end());
   std::vector<ShapeCodes> sets;
   for (int set = 0; set < static_cast<int>(description.weights.size()); ++set) {
-    sets.push_back(solveShapes(package, set, solver, features, firstMapOf(package, maps, set), progress));
+    sets.push_back(solve(package, set, firstMapOf(package, maps, set)));
   }
   double clamped = 0.0;
   for (std::size_t set = 0; set < sets.size(); ++set) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "facezip/capture.hpp"
 #include "facezip/package.hpp"
 #include "facezip/progress.hpp"
+#include "rig/shape_codes.hpp"
 #include "rig/skin_features.hpp"
 #include "rig/texture_solve.hpp"
 
@@ -31,16 +33,20 @@ struct PackageMaps {
 };
 PackageMaps openPackageMaps(const Capture& capture, const compress::Face& face, const Package& package);
 
-/// Takes lambda and the share of strain from the options, or from leaving captured expressions out.
+/// The solver of textureSolveOf(options), not kStrain, with lambda and the share of strain from the options, or from
+/// leaving captured expressions out.
 ChosenSolve chooseSolve(const RigOptions& options, const Eigen::MatrixXd& weights, const SkinFeatures& features,
                         const PackageMaps& maps, Progress& progress);
 
+/// Codes of a set of weights of a package, for the captured expressions and for the shapes.
+/// map  one that the set is used by
+using SolveSet = std::function<ShapeCodes(const Package& package, int set, const compress::GridMap& map)>;
+
 /// Replaces the weights and the names of the package in `directory`: `captured` names, then those of the shapes, whose
-/// weight maps follow from the captured ones' (shape_codes.hpp). Atlas and package.json are written anew; textures
+/// weight maps `solve` finds. Atlas and package.json are written anew; textures
 /// stay. Returns the share of the shapes' weights that was clamped, of the set that has most. Throws InputError,
-/// OutputError, Cancelled.
+/// OutputError, and what `solve` throws.
 double addShapeWeights(const std::filesystem::path& directory, const std::vector<std::string>& captured,
-                       const std::vector<std::string>& shapes, const TextureSolver& solver,
-                       const SkinFeatures& features, const PackageMaps& maps, Progress& progress);
+                       const std::vector<std::string>& shapes, const SolveSet& solve, const PackageMaps& maps);
 
 }  // namespace facezip::rig

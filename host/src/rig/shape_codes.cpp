@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "package/weight_atlas.hpp"
@@ -15,29 +16,10 @@ namespace {
 /// Cells whose shapes say how far the codes must reach, and the share of their weights at either end that need not be.
 constexpr std::size_t kCellsToReach = 4096;
 constexpr double kUnreached = 0.005;
-/// Share of the captured weights' range by which the codes may reach farther at either end.
+/// Share of the captured weights' range by which the codes may reach farther at either end. Eq. 11 as it is printed
+/// amplifies: its shapes need all they ask for, or they do not add up to the captured expressions (Eq. 10).
 constexpr double kFarther = 0.5;
-
-/// A set of weights as the package has it, [cell][C] by expression: column n is expression n.
-Eigen::MatrixXf decodeSet(const Package& package, int set) {
-  const PackageDescription& description = package.description();
-  const PackageWeights& weights = description.weights[static_cast<std::size_t>(set)];
-  const int channels = description.differences;
-  const Eigen::Index cells = static_cast<Eigen::Index>(weights.tile_width) * weights.tile_height;
-  Eigen::MatrixXf decoded(cells * channels, static_cast<Eigen::Index>(description.expressions.size()));
-  package::readWeightAtlas(
-      description, set, package.folder(), [&](int n, int row, int first, int count, std::span<const std::byte> codes) {
-        for (int x = 0; x < weights.tile_width; ++x) {
-          for (int i = 0; i < count; ++i) {
-            const auto c = static_cast<std::size_t>(first + i);
-            const int code = std::to_integer<int>(codes[static_cast<std::size_t>(x * count + i)]);
-            decoded((static_cast<Eigen::Index>(row) * weights.tile_width + x) * channels + first + i, n) =
-                static_cast<float>(weights.scale[c] * code + weights.offset[c]);
-          }
-        }
-      });
-  return decoded;
-}
+constexpr double kFartherByPseudoInverse = 2.0;
 
 class ShapeSolver {
  public:
@@ -96,6 +78,30 @@ class ShapeSolver {
   }
 
   void reachFarther() {
+    if (solver_.method == TextureSolve::kPseudoInverse) {
+      reachAll();
+    } else {
+      reachMost();
+    }
+  }
+
+  /// As far as any weight of a shape goes, in any cell.
+  void reachAll() {
+    const auto count = static_cast<Eigen::Index>(channels_);
+    Eigen::ArrayXf low = Eigen::ArrayXf::Constant(count, std::numeric_limits<float>::infinity()), high = -low;
+    for (std::size_t cell = 0; cell < cells(); ++cell) {
+      const Eigen::MatrixXf shapes = shapesOf(cell);
+      if (!shapes.allFinite()) continue;
+      low = low.min(shapes.rowwise().minCoeff().array());
+      high = high.max(shapes.rowwise().maxCoeff().array());
+    }
+    for (Eigen::Index c = 0; c < count; ++c) {
+      if (low[c] <= high[c]) reach(low[c], high[c], kFartherByPseudoInverse, static_cast<std::size_t>(c));
+    }
+  }
+
+  /// As far as nearly all go, in a sample of cells.
+  void reachMost() {
     std::vector<std::size_t> covered;
     for (std::size_t cell = 0; cell < cells(); ++cell) {
       if (samples_[cell].triangle >= 0) covered.push_back(cell);
@@ -111,17 +117,19 @@ class ShapeSolver {
       }
     }
     for (std::size_t c = 0; c < channels_; ++c) {
-      if (!weights[c].empty()) reachFarther(weights[c], result_.scale[c], result_.offset[c]);
+      if (weights[c].empty()) continue;
+      const auto end = static_cast<std::ptrdiff_t>(kUnreached * static_cast<double>(weights[c].size()));
+      std::ranges::sort(weights[c]);
+      reach(*(weights[c].begin() + end), *(weights[c].end() - 1 - end), kFarther, c);
     }
   }
 
-  static void reachFarther(std::vector<float>& weights, double& scale, double& offset) {
-    const auto end = static_cast<std::ptrdiff_t>(kUnreached * static_cast<double>(weights.size()));
-    std::ranges::sort(weights);
+  void reach(double wanted_low, double wanted_high, double farther, std::size_t channel) {
+    double& scale = result_.scale[channel];
+    double& offset = result_.offset[channel];
     const double range = 255.0 * scale;
-    const double low = std::clamp<double>(*(weights.begin() + end), offset - kFarther * range, offset);
-    const double high =
-        std::clamp<double>(*(weights.end() - 1 - end), offset + range, offset + (1.0 + kFarther) * range);
+    const double low = std::clamp(wanted_low, offset - farther * range, offset);
+    const double high = std::clamp(wanted_high, offset + range, offset + (1.0 + farther) * range);
     if (low == offset && high == offset + range) return;  // not even rounded
     scale = (high - low) / 255.0;
     offset = low;
@@ -157,6 +165,26 @@ class ShapeSolver {
 };
 
 }  // namespace
+
+Eigen::MatrixXf decodeSet(const Package& package, int set) {
+  const PackageDescription& description = package.description();
+  const PackageWeights& weights = description.weights[static_cast<std::size_t>(set)];
+  const int channels = description.differences;
+  const Eigen::Index cells = static_cast<Eigen::Index>(weights.tile_width) * weights.tile_height;
+  Eigen::MatrixXf decoded(cells * channels, static_cast<Eigen::Index>(description.expressions.size()));
+  package::readWeightAtlas(
+      description, set, package.folder(), [&](int n, int row, int first, int count, std::span<const std::byte> codes) {
+        for (int x = 0; x < weights.tile_width; ++x) {
+          for (int i = 0; i < count; ++i) {
+            const auto c = static_cast<std::size_t>(first + i);
+            const int code = std::to_integer<int>(codes[static_cast<std::size_t>(x * count + i)]);
+            decoded((static_cast<Eigen::Index>(row) * weights.tile_width + x) * channels + first + i, n) =
+                static_cast<float>(weights.scale[c] * code + weights.offset[c]);
+          }
+        }
+      });
+  return decoded;
+}
 
 ShapeCodes solveShapes(const Package& package, int set, const TextureSolver& solver, const SkinFeatures& features,
                        const compress::GridMap& map, Progress& progress) {

@@ -20,9 +20,12 @@ struct ShapeCodes {
   double clamped = 0.0;          ///< share of the shapes' weights on the face that the codes do not reach
 };
 
+/// A set of weights as the package has it, [cell][C] by expression: column n is expression n. Throws InputError.
+Eigen::MatrixXf decodeSet(const Package& package, int set);
+
 /// Solves the weight maps of the shapes in a set of `package`, which has those of the captured expressions. The codes
-/// are the captured ones', but where shapes go farther they reach up to twice as far: a range that held whatever a bad
-/// solution makes would coarsen what was captured.
+/// are the captured ones', but where shapes go farther they reach up to twice as far (five times with the pseudo-inverse,
+/// then for every weight): a range that held whatever a bad solution makes would coarsen what was captured.
 /// map  one that the set is used by. Throws InputError, Cancelled.
 ShapeCodes solveShapes(const Package& package, int set, const TextureSolver& solver, const SkinFeatures& features,
                        const compress::GridMap& map, Progress& progress);

@@ -15,8 +15,24 @@ const std::vector<NamedValue<TextureSolve>>& namesOf() {
       {TextureSolve::kLocal, "local", "local"},
       {TextureSolve::kDamped, "damped", "damped"},
       {TextureSolve::kPseudoInverse, "pseudo-inverse", "pseudo-inverse"},
+      {TextureSolve::kStrain, "strain", "strain"},
   };
   return names;
+}
+
+TextureSolve textureSolveOf(const RigOptions& options) {
+  const Method method = options.compress.method;
+  const bool stretches = method == Method::kCompressStretch;
+  if (options.texture_solve) {
+    if (stretches == (*options.texture_solve == TextureSolve::kStrain)) return *options.texture_solve;
+    throw InputError({"--texture-solve", "",
+                      stretches ? "strain, as --method compress-stretch blends its two maps by the strain of the skin"
+                                : "local, damped or pseudo-inverse: strain goes with --method compress-stretch",
+                      nameOf(*options.texture_solve), "leave it out: what suits the method is taken"});
+  }
+  if (stretches) return TextureSolve::kStrain;
+  const bool papers = method == Method::kPaper || method == Method::kNoPermutation;
+  return papers ? TextureSolve::kPseudoInverse : TextureSolve::kLocal;
 }
 
 }  // namespace facezip
@@ -50,7 +66,7 @@ Covariance covarianceOf(const Eigen::MatrixXd& weights, const PointFeatures& poi
 int rankOf(const Eigen::MatrixXd& weights) { return static_cast<int>(decompose(weights).rank()); }
 
 Eigen::MatrixXd globalSolution(const TextureSolver& solver) {
-  assert(solver.method != TextureSolve::kLocal);
+  assert(solver.method == TextureSolve::kDamped || solver.method == TextureSolve::kPseudoInverse);
   const Eigen::MatrixXd& b = solver.weights;
   if (solver.method == TextureSolve::kPseudoInverse) return decompose(b).pseudoInverse();
   Eigen::MatrixXd system = b * b.transpose();

@@ -151,8 +151,8 @@ int32_t facezip_map_count(const facezip_package* package) {
 int32_t facezip_find_map(const facezip_package* package, const char* name) {
   if (package == nullptr || name == nullptr) return -1;
   const auto& maps = package->description.maps;
-  const auto found = std::find_if(maps.begin(), maps.end(),
-                                  [wanted = facezip::io::composed(name)](const auto& map) { return map.name == wanted; });
+  const auto found = std::find_if(
+      maps.begin(), maps.end(), [wanted = facezip::io::composed(name)](const auto& map) { return map.name == wanted; });
   return found == maps.end() ? -1 : static_cast<int32_t>(found - maps.begin());
 }
 

@@ -1,10 +1,11 @@
 // The blend on the GPU: weight maps and textures of a package as texture arrays, and host/shaders/facezip_blend.h.
 import * as THREE from 'three';
 import blendSource from '../../shaders/facezip_blend.h';
+import { inBlocks, readBlockArray, readBlockTexture, requireBlocks } from './block_textures.js';
 import { readImage, toRgba } from './images.js';
 import { readWeights } from './package.js';
 
-/** Counts bytes of textures, as the page shows them: RGBA of what was asked for, mip levels included. */
+/** Counts bytes of textures on the GPU: blocks as they are, images as RGBA, mip levels included. */
 export const memory = { bytes: 0 };
 
 function prepare(texture, bytes, mipmaps) {
@@ -102,29 +103,48 @@ class WeightSet {
   }
 }
 
+/** Blocks go to the GPU as they are. */
+function counted({ texture, bytes }) {
+  memory.bytes += bytes;
+  return texture;
+}
+
+async function loadNeutral(readFile, map, floatsFilter) {
+  if (inBlocks(map.neutral)) return counted(await readBlockTexture(readFile, map.neutral, map));
+  const image = await readImage(readFile, map.neutral.file);
+  const bytes = image.most === 255;
+  const data = toRgba(image, new (bytes ? Uint8Array : Float32Array)(4 * map.width * map.height));
+  const texture = new THREE.DataTexture(data, map.width, map.height, THREE.RGBAFormat,
+    bytes ? THREE.UnsignedByteType : THREE.FloatType);
+  return prepare(texture, data.byteLength, bytes || floatsFilter);
+}
+
+async function loadDifferences(readFile, map, floatsFilter) {
+  if (inBlocks(map.differences[0])) return counted(await readBlockArray(readFile, map.differences, map));
+  const images = [];
+  for (const difference of map.differences) images.push(await readImage(readFile, difference.file));
+  return arrayTexture(images, true, floatsFilter);
+}
+
 /** One map: three samplers, whatever C is: neutral, differences, weights. */
 class MapTextures {
-  static async load(readFile, description, map, set, floatsFilter) {
-    const neutral = await readImage(readFile, map.neutral.file);
-    const differences = [];
-    for (const difference of map.differences) differences.push(await readImage(readFile, difference.file));
-    return new MapTextures(description, map, set, neutral, differences, floatsFilter);
+  static async load(readFile, map, set, renderer) {
+    requireBlocks(map, renderer);
+    const floatsFilter = renderer.extensions.has('OES_texture_float_linear');
+    return new MapTextures(map, set, await loadNeutral(readFile, map, floatsFilter),
+      await loadDifferences(readFile, map, floatsFilter));
   }
-  constructor(description, map, set, neutral, differences, floatsFilter) {
-    Object.assign(this, { name: map.name, width: map.width, height: map.height, set, count: differences.length,
+  constructor(map, set, neutral, differences) {
+    Object.assign(this, { name: map.name, width: map.width, height: map.height, set, count: map.differences.length,
       linear: map.colour_space === 'linear' });
-    const bytes = neutral.most === 255;
-    const data = toRgba(neutral, new (bytes ? Uint8Array : Float32Array)(4 * map.width * map.height));
-    const texture = new THREE.DataTexture(data, map.width, map.height, THREE.RGBAFormat,
-      bytes ? THREE.UnsignedByteType : THREE.FloatType);
     const most = (1 << map.difference_bits) - 1;
     const perTexture = (value) => map.differences.map((difference) => {
       const channel = (c) => (c < map.channels ? value(difference.scale[c], difference.offset[c]) : 0);
       return new THREE.Vector4(channel(0), channel(1), channel(2), channel(3));
     });
     this.uniforms = {
-      neutral: { value: prepare(texture, data.byteLength, bytes || floatsFilter) },
-      differences: { value: arrayTexture(differences, true, floatsFilter) },
+      neutral: { value: neutral },
+      differences: { value: differences },
       grid: { value: set.grid.texture },
       zero: { value: perTexture((scale, offset) => (scale > 0 ? Math.round(-offset / scale) / most : 0)) },
       scale: { value: perTexture((scale) => (scale * most) / 255) },
@@ -193,7 +213,6 @@ export class PackageTextures {
   static async load(readFile, description, renderer, progress) {
     requireLimits(description, renderer);
     const textures = new PackageTextures();
-    const floatsFilter = renderer.extensions.has('OES_texture_float_linear');
     textures.differences = description.differences;
     textures.sets = [];
     textures.maps = [];
@@ -203,7 +222,7 @@ export class PackageTextures {
     }
     for (const map of description.maps) {
       progress(map.name);
-      textures.maps.push(await MapTextures.load(readFile, description, map, textures.sets[map.weights], floatsFilter));
+      textures.maps.push(await MapTextures.load(readFile, map, textures.sets[map.weights], renderer));
     }
     return textures;
   }

@@ -1,5 +1,6 @@
 // Materials of the head: shaded with every map that has a place in a physical material, and views for a look inside.
 import * as THREE from 'three';
+import table from '../../data/map_roles.json';
 import { blendHeader } from './blend.js';
 
 // Tangent frame from derivatives, since captures carry no tangents; v of textures runs down, +y of normal maps up.
@@ -27,28 +28,42 @@ function withUvs(shader) {
     .replace('#include <uv_vertex>', '#include <uv_vertex>\nfz_uv = uv;');
 }
 
-// What a map is in a physical material, by the first of these parts that its name holds: as exports for engines have it.
-const roles = [['albedo', 'albedo'], ['diffuse', 'albedo'], ['normal', 'normal'], ['roughness', 'roughness']];
+/** "T_BaseColorMap2" gives t, base, color, map; "AOMap" gives ao, map. */
+const wordsOf = (name) => (name.match(/[A-Z]+(?![a-z])|[A-Z]?[a-z]+/g) ?? []).map((word) => word.toLowerCase());
+
+/** A word of six letters or more anywhere, or one or several words of the name in a row. */
+const holds = (words, entry) => (entry.length >= 6 && words.join('').includes(entry)) ||
+  words.some((_, first) => words.some((__, last) => last >= first && words.slice(first, last + 1).join('') === entry));
+
+/** What a map is in a physical material, by its name: as exports have it (host/src/export/map_roles.cpp). */
+export function roleOf(name) {
+  const words = wordsOf(name);
+  return table.roles.find((entry) => entry.words.some((word) => holds(words, word)) &&
+    !entry.not.some((word) => holds(words, word)))?.role;
+}
 
 /** The first map of a role has it. */
 export function mapOfRole({ maps }, role) {
-  return maps.find(({ name }) => roles.find(([part]) => name.toLowerCase().includes(part))?.[1] === role);
+  return maps.find(({ name }) => roleOf(name) === role);
 }
 
-/** Albedo (or the first map), normal and roughness, blended in one shader. uniforms.detail switches the normal map. */
+/** Albedo (or the first map), normal, roughness and occlusion, blended in one shader. uniforms.detail switches the normal
+ * map. */
 export function shadedMaterial(textures, uniforms) {
   const albedo = mapOfRole(textures, 'albedo') ?? textures.maps[0];
   const normal = mapOfRole(textures, 'normal');
   const roughness = mapOfRole(textures, 'roughness');
+  const occlusion = mapOfRole(textures, 'occlusion');
   const declarations = `${blendHeader(textures.differences)} ${tangentFrame} ${toLinear}
-    ${albedo.source('albedo')} ${normal?.source('normal') ?? ''} ${roughness?.source('roughness') ?? ''}`;
+    ${albedo.source('albedo')} ${normal?.source('normal') ?? ''} ${roughness?.source('roughness') ?? ''}
+    ${occlusion?.source('occlusion') ?? ''}`;
   const stored = 'clamp(albedo_value(fz_uv).rgb, 0.0, 1.0)';
   const colour = albedo.linear ? stored : `fz_linear(${stored})`;
   const material = new THREE.MeshStandardMaterial({ roughness: 0.55, side: THREE.DoubleSide });
   material.onBeforeCompile = (shader) => {
     withUvs(shader);
     Object.assign(shader.uniforms, uniforms, albedo.uniformsAs('albedo'), normal?.uniformsAs('normal'),
-      roughness?.uniformsAs('roughness'));
+      roughness?.uniformsAs('roughness'), occlusion?.uniformsAs('occlusion'));
     shader.fragmentShader = shader.fragmentShader
       .replace('#include <common>', `#include <common>
         varying vec2 fz_uv;
@@ -63,6 +78,10 @@ export function shadedMaterial(textures, uniforms) {
     if (roughness) {
       shader.fragmentShader = shader.fragmentShader.replace('#include <roughnessmap_fragment>',
         'float roughnessFactor = clamp(roughness_value(fz_uv).r, 0.05, 1.0);');
+    }
+    if (occlusion) {
+      shader.fragmentShader = shader.fragmentShader.replace('#include <aomap_fragment>',
+        'reflectedLight.indirectDiffuse *= clamp(occlusion_value(fz_uv).r, 0.0, 1.0);');
     }
   };
   // By itself three.js compares the text of onBeforeCompile, and would draw a second face with the first one's program.

@@ -6,7 +6,9 @@ import { cut, readImage } from './images.js';
 export async function readDescription(readFile) {
   const description = JSON.parse(new TextDecoder().decode(await readFile('package.json')));
   if (description.format !== 'facezip-package') throw new Error('package.json is not of a facezip package');
-  if (description.version !== 2) throw new Error(`package.json has version ${description.version}; this page reads 2`);
+  if (![2, 3].includes(description.version)) {
+    throw new Error(`package.json has version ${description.version}; this page reads 2 and 3`);
+  }
   description.expressions = description.expressions.map(composed);
   return description;
 }

@@ -12,8 +12,8 @@
 namespace facezip::compress {
 namespace {
 
-/// Rows that are coded at a time: enough to spread over threads, and whole blocks of every height (120 = lcm of 4, 5, 6,
-/// 8, 10 and 12).
+/// Rows that are coded at a time: enough to spread over threads, and whole blocks of every height (120 = lcm of 4, 5,
+/// 6, 8, 10 and 12).
 constexpr int kRowsAtOnce = 240;
 
 }  // namespace
@@ -49,12 +49,9 @@ CodedNeutral codeNeutral(device::DeviceContext& context, const OpenMap& map, blo
     const std::vector<float> weights = neutralBlockWeights(*map.classes, begin, end);
     const std::span texels(reinterpret_cast<const std::uint8_t*>(samples.data()), samples.size());
     const std::size_t first = toSize(begin / blocks::infoOf(format).block_height) * row_blocks;
-    encoder->encode({.width = shape.width,
-                     .rows = end - begin,
-                     .channels = shape.channels,
-                     .samples = texels,
-                     .weights = weights},
-                    std::span(coded.blocks).subspan(first, blocks::blockBytes(format, shape.width, end - begin)), {});
+    encoder->encode(
+        {.width = shape.width, .rows = end - begin, .channels = shape.channels, .samples = texels, .weights = weights},
+        std::span(coded.blocks).subspan(first, blocks::blockBytes(format, shape.width, end - begin)), {});
     progress.advance(toSize(end));
   }
   return coded;

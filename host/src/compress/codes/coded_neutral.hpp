@@ -1,4 +1,5 @@
-// coded_neutral.hpp - the neutral of a map in blocks, coded before anything else: differences are to what it decodes to.
+// coded_neutral.hpp - the neutral of a map in blocks, coded before anything else: differences are to what it decodes
+// to.
 #pragma once
 
 #include <cstddef>

@@ -106,7 +106,8 @@ GridWeights refineCoded(device::DeviceContext& context, const CodedProblem& prob
     weights.store(begin, end, sweeps.sweep(turns, progress));
     progress.advance(toSize(end));
   };
-  forEachWindow(problem.space.rows, problem.window_rows, [&](int b, int e) { sweeps.prepare(b, e); }, load, work);
+  forEachWindow(
+      problem.space.rows, problem.window_rows, [&](int b, int e) { sweeps.prepare(b, e); }, load, work);
   return weights;
 }
 

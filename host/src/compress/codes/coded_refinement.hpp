@@ -23,7 +23,7 @@ struct CodedMap {
 /// References must outlive the call.
 struct CodedProblem {
   WeightSpace space;
-  const EncodedWeights& start;    ///< fitted to textures that are not coded; trust is to them
+  const EncodedWeights& start;     ///< fitted to textures that are not coded; trust is to them
   std::span<const CodedMap> maps;  ///< that share the weights
   MakeMapTiles make_tiles;
   double cell_energy = 0.0;  ///< as RefinementProblem has it

@@ -82,8 +82,8 @@ const cl::Buffer& CodedTextures::compute(const GridBand& band, const WeightWindo
     launchDifferenceTarget(context_, space_, buffers, i);
     codeTexture(tiles, i);
   }
-  launchDifferenceSettle(context_, space_, buffers,
-                         {band.tiles.texelWeights(), textures_.buffer(), errors_.buffer()}, ridge);
+  launchDifferenceSettle(context_, space_, buffers, {band.tiles.texelWeights(), textures_.buffer(), errors_.buffer()},
+                         ridge);
   return textures_.buffer();
 }
 

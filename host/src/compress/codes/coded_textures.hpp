@@ -26,8 +26,8 @@ struct TextureCoding {
 class CodedTextures {
  public:
   /// keep_blocks  whether blocks() is asked for
-  CodedTextures(device::DeviceContext& context, const WeightSpace& space, TextureCoding coding,
-                blocks::Quality quality, bool keep_blocks);
+  CodedTextures(device::DeviceContext& context, const WeightSpace& space, TextureCoding coding, blocks::Quality quality,
+                bool keep_blocks);
   ~CodedTextures();
 
   /// The tiles that the next compute() is of; may go afterwards.

@@ -20,9 +20,8 @@ class DeviceTextureCoder final : public TextureCoder {
     if (!blocks.empty()) encoder_.fill(blocks_.buffer(), shape.width, shape.rows, zero);
     if (band.tiles.tileCount() > 0) {
       blocks::DeviceTexels texels;
-      texels.layout =
-          blocks::TexelLayout::inTiles(shape.width, shape.rows, shape.channels, band.tiles.positions(),
-                                       band.tiles.tileCount(), planes.textures, planes.texture);
+      texels.layout = blocks::TexelLayout::inTiles(shape.width, shape.rows, shape.channels, band.tiles.positions(),
+                                                   band.tiles.tileCount(), planes.textures, planes.texture);
       texels.samples = planes.codes;
       texels.weights = band.weights_buffer;
       encoder_.encodeOnDevice(texels, blocks_.buffer(), planes.codes);

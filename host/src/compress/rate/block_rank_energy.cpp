@@ -41,6 +41,31 @@ int blocksAcross(int texels, int side) { return (texels + side - 1) / side; }
 
 }  // namespace
 
+std::size_t SharedGrams::bytes(int expressions) {
+  const auto n = static_cast<std::size_t>(expressions);
+  return n * (n + 1) / 2 * sizeof(float);
+}
+
+void SharedGrams::add(std::size_t block, const Eigen::MatrixXd& gram, double weight) {
+  std::vector<float>& sum = grams_[block];
+  sum.resize(bytes(expressions_) / sizeof(float), 0.0f);
+  std::size_t entry = 0;
+  for (Eigen::Index n = 0; n < gram.cols(); ++n) {
+    for (Eigen::Index m = n; m < gram.rows(); ++m) sum[entry++] += static_cast<float>(weight * gram(m, n));
+  }
+}
+
+Eigen::MatrixXd SharedGrams::gram(std::size_t block) const {
+  if (grams_[block].empty()) return {};
+  Eigen::MatrixXd gram(expressions_, expressions_);
+  std::size_t entry = 0;
+  for (Eigen::Index n = 0; n < gram.cols(); ++n) {
+    for (Eigen::Index m = n; m < gram.rows(); ++m)
+      gram(m, n) = gram(n, m) = static_cast<double>(grams_[block][entry++]);
+  }
+  return gram;
+}
+
 BlockRankEnergy::BlockRankEnergy(std::vector<int> sides, int width, int height, int channels, int expressions,
                                  int stride)
     : width_(width), height_(height), channels_(channels), expressions_(expressions), stride_(stride) {
@@ -126,6 +151,32 @@ void BlockRankEnergy::foldInto(Level& larger, const Level& smaller) const {
   });
 }
 
+void BlockRankEnergy::shareWith(SharedGrams& grams, double weight) {
+  assert(!keepsSamples());
+  shared_ = &grams;
+  shared_weight_ = weight;
+}
+
+std::size_t BlockRankEnergy::smallestBlocks() const {
+  const int side = levels_.front().side;
+  return static_cast<std::size_t>(blocksAcross(width_, side)) * static_cast<std::size_t>(blocksAcross(height_, side));
+}
+
+std::vector<RankEnergy> BlockRankEnergy::energiesOf(const SharedGrams& grams) const {
+  std::vector<int> sides;
+  for (const Level& level : levels_) sides.push_back(level.side);
+  BlockRankEnergy sum(sides, width_, height_, channels_, expressions_);
+  std::vector<Block>& row = sum.levels_.front().blocks;
+  for (std::size_t first = 0; first < smallestBlocks(); first += row.size()) {
+    for (std::size_t b = 0; b < row.size(); ++b) {
+      row[b].gram = grams.gram(first + b);
+      row[b].texels = row[b].gram.size() > 0 ? 1 : 0;
+    }
+    sum.closeRow(0);
+  }
+  return sum.energies_;
+}
+
 // Takes the energies of a finished row of blocks, hands it to the next size and starts a new one.
 void BlockRankEnergy::closeRow(std::size_t level_index) {
   Level& level = levels_[level_index];
@@ -142,6 +193,12 @@ void BlockRankEnergy::closeRow(std::size_t level_index) {
         Eigen::Map<const Eigen::MatrixXf>(block.samples.data(), expressions_, rows).cast<double>();
     residuals[b] = residualsOf(samples.transpose() * samples);
   });
+  if (level_index == 0 && shared_ != nullptr) {
+    const std::size_t first = static_cast<std::size_t>(level.row) * level.blocks.size();
+    tbb::parallel_for(std::size_t{0}, level.blocks.size(), [&](std::size_t b) {
+      if (level.blocks[b].texels > 0) shared_->add(first + b, level.blocks[b].gram, shared_weight_);
+    });
+  }
   RankEnergy& energy = energies_[level_index];
   for (std::size_t b = 0; b < residuals.size(); ++b) {
     for (std::size_t c = 0; c < residuals[b].size(); ++c) energy.residual[c] += residuals[b][c];

@@ -25,6 +25,25 @@ struct RankEnergy {
   std::uint64_t texels = 0;  ///< covered ones that were looked at
 };
 
+/// Gram matrices of the smallest blocks, added up over maps that share weights, each times its weight: what C textures
+/// for all of them can leave is more than what each would leave alone. In single precision.
+class SharedGrams {
+ public:
+  SharedGrams(std::size_t blocks, int expressions) : grams_(blocks), expressions_(expressions) {}
+
+  /// Blocks of their own may be added to by several threads.
+  void add(std::size_t block, const Eigen::MatrixXd& gram, double weight);
+  /// Empty where nothing was added.
+  Eigen::MatrixXd gram(std::size_t block) const;
+
+  /// Bytes of the Gram matrix of one block.
+  static std::size_t bytes(int expressions);
+
+ private:
+  std::vector<std::vector<float>> grams_;  ///< [block][lower triangle]
+  int expressions_;
+};
+
 /// Adds up the residual energies of blocks of several sizes in one pass over a map, band by band. Gram matrices of
 /// small blocks add up to those of the large blocks that hold them, so each size costs its eigenvalues alone. Sums are
 /// in double; texels of a block in their order, blocks in theirs: the same bits on any number of threads. Memory: one
@@ -41,6 +60,15 @@ class BlockRankEnergy {
   /// texels   the covered ones, as coveredTexels() gives them
   void addBand(int begin_row, std::span<const std::byte> samples, const BandShape& shape,
                std::span<const std::uint32_t> texels);
+
+  /// Adds the smallest blocks' Gram matrices, times `weight`, to `grams` from now on too: index y * across + x.
+  void shareWith(SharedGrams& grams, double weight);
+
+  /// The energies of the blocks of `grams`, of the same sizes as this object's. Texels are not counted.
+  std::vector<RankEnergy> energiesOf(const SharedGrams& grams) const;
+
+  /// Number of the smallest blocks.
+  std::size_t smallestBlocks() const;
 
   /// One per side, when all rows were added.
   const std::vector<RankEnergy>& energies() const { return energies_; }
@@ -73,6 +101,8 @@ class BlockRankEnergy {
   int stride_;
   std::vector<Level> levels_;
   std::vector<RankEnergy> energies_;
+  SharedGrams* shared_ = nullptr;
+  double shared_weight_ = 0.0;
 };
 
 }  // namespace facezip::compress

@@ -25,12 +25,15 @@ struct RateMap {
 /// bits too where there are maps that may have them.
 ///   RMSE^2 = metric-weighted mean over maps of mean_square (left + rounding)
 /// Free weights come near what the best C components of each cell leave, more often below than above it since they are
-/// interpolated; codes of 8 bits add a share of the differences' own energy (kRounding), those of 16 that / 257^2.
-/// scales        texels of the largest map per cell, as RateMap::left counts them
-/// cells         of the weight grid at each scale, times the number of weight sets
+/// interpolated; maps that share weights leave what C components for all of them do. Codes of 8 bits add a share of the
+/// differences' own energy (kRounding), those of 16 that / 257^2. scales        texels of the largest map per cell, as
+/// RateMap::left counts them cells         of the weight grid at each scale, times the number of weight sets
 /// weight_maps   of each set: N, a rig's M shapes beside them
+/// shared_left   [scale][C] where all maps share weights: as RateMap::left, of their weighted energy together, and in
+///               its place; empty where each has its own
 std::vector<RatePoint> rateCurve(std::span<const RateMap> maps, std::span<const int> scales,
-                                 std::span<const std::uint64_t> cells, int weight_maps);
+                                 std::span<const std::uint64_t> cells, int weight_maps,
+                                 const std::vector<std::vector<double>>& shared_left = {});
 
 inline constexpr double kRounding = 1.5e-3;
 

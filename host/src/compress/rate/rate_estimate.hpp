@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "compress/bands/map_bands.hpp"
@@ -15,7 +16,8 @@ class RateEstimate {
  public:
   /// Finds the weight scales, of 4, 8, 16 and 32, that all maps can share. Throws InputError where there is none.
   /// further_weight_maps  of each set, beside those of the N expressions
-  RateEstimate(const MapSet& maps, int further_weight_maps);
+  /// weight_sets  1, or one for every map
+  RateEstimate(const MapSet& maps, int further_weight_maps, int weight_sets);
 
   /// Looks at some of the texels of a band of map `m`; bands in rising order.
   void addBand(std::size_t m, const MapBand& band);
@@ -27,19 +29,22 @@ class RateEstimate {
   void startOver(std::size_t m);
 
   /// The curve, when all bands were added.
-  /// weight_sets  1, or one for every map
-  std::vector<RatePoint> curve(int weight_sets) const;
+  std::vector<RatePoint> curve() const;
 
  private:
+  void shareGrams();
+  std::vector<std::vector<double>> sharedLeft() const;
   BlockRankEnergy newEnergies(std::size_t m) const;
 
   const MapSet& maps_;
   int expressions_;
   int weight_maps_;
+  int weight_sets_;
   std::vector<int> scales_;                ///< of the largest map, rising
   std::vector<std::vector<int>> sides_;    ///< of every map: texels of a block at each scale
   std::vector<BlockRankEnergy> energies_;  ///< of every map
   std::vector<int> strides_;               ///< of every map: one in so many of the largest blocks is looked at
+  std::optional<SharedGrams> shared_;      ///< of maps that share weights, where there are several
 };
 
 }  // namespace facezip::compress

@@ -11,7 +11,7 @@
 namespace facezip::compress {
 
 RateSearch::RateSearch(const CompressOptions& options, const MapSet& maps, int weight_sets)
-    : options_(options), weight_sets_(weight_sets), estimate_(maps, options.further_weight_maps) {
+    : options_(options), estimate_(maps, options.further_weight_maps, weight_sets) {
   // Sizes are known before any texel is.
   const RatePoint least = smallest();
   if (options.budget_bytes && least.bytes > *options.budget_bytes) {
@@ -22,11 +22,11 @@ RateSearch::RateSearch(const CompressOptions& options, const MapSet& maps, int w
   }
 }
 
-RatePoint RateSearch::smallest() const { return efficientPoints(estimate_.curve(weight_sets_)).front(); }
+RatePoint RateSearch::smallest() const { return efficientPoints(estimate_.curve()).front(); }
 
 RatePoint RateSearch::choose(const std::function<bool(const RatePoint&)>& fits) {
   if (curve_.empty()) {
-    curve_ = efficientPoints(estimate_.curve(weight_sets_));
+    curve_ = efficientPoints(estimate_.curve());
     keepWhatFits(fits);
   }
   const std::optional<RatePoint> chosen = chooseRate(curve_, options_.target_rmse, options_.budget_bytes, calibration_);

@@ -44,7 +44,6 @@ class RateSearch {
   RatePoint lastResort() const;
 
   const CompressOptions& options_;
-  int weight_sets_;
   RateEstimate estimate_;
   std::vector<RatePoint> curve_;
   std::optional<RatePoint> tried_;

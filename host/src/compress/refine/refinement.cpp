@@ -196,7 +196,8 @@ Refinement refine(device::DeviceContext& context, const RefinementProblem& probl
     }
     progress.advance(toSize(end));
   };
-  forEachWindow(rows, problem.window_rows, [&](int begin, int end) { sweeps.prepare(begin, end); }, load, work);
+  forEachWindow(
+      rows, problem.window_rows, [&](int begin, int end) { sweeps.prepare(begin, end); }, load, work);
   // The start is kept whole: it is what is left where clamping costs too much.
   const double clipped = options.most_sweeps > 0 ? options.clipped_tiles : 0.0;
   for (std::size_t m = 0; m < problem.maps.size(); ++m) {

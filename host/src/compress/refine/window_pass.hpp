@@ -1,5 +1,5 @@
-// window_pass.hpp - windows of rows of cells, from the top of the grid to its bottom: what is above stays as it is done,
-// what is below still stands where it started.
+// window_pass.hpp - windows of rows of cells, from the top of the grid to its bottom: what is above stays as it is
+// done, what is below still stands where it started.
 #pragma once
 
 #include <functional>

@@ -60,7 +60,7 @@ int runCommand(CLI::App& app, int argc, char** argv) {
     return app.exit(request);  // --help, --version
   } catch (const CLI::ParseError& error) {
     const std::string fault = usageFault(app, error, argc, argv);
-    return fail(kExitUsage, printable(fault) + "\nRun with --help for more information.");
+    return fail(kExitUsage, printable(fault) + "; --help says more");
   } catch (const Cancelled&) {
     return fail(kExitCancelled, "cancelled; nothing was written");
   } catch (const InputError& error) {

@@ -52,7 +52,7 @@ std::string unknownOption(const std::vector<std::string>& arguments, const std::
 std::string usageFault(const CLI::App& app, const CLI::ParseError& error, int argc, const char* const* argv) {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   const auto word = std::ranges::find_if(arguments, [](const std::string& a) { return !a.starts_with('-'); });
-  if (word == arguments.end()) return "a command is required; `facezip --help` lists them";
+  if (word == arguments.end()) return "a command is required";
   const std::vector<std::string> commands = commandNames(app);
   if (std::ranges::find(commands, *word) == commands.end()) {
     return fmt::format("there is no command \"{}\"{}", *word, question(*word, commands));

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <boost/pending/disjoint_sets.hpp>
 #include <cassert>
 #include <cmath>
 
@@ -18,6 +19,7 @@ constexpr double kSampleWeight = 0.3;
 constexpr double kMembraneShare = 0.002;  // of the bending length
 constexpr double kAnchor = 1e-4;
 constexpr double kUnseenMembrane = 100.0;
+constexpr double kSmallHole = 0.05;  // of the area that is seen
 // A kernel below a few times the residual's median takes the surface's own noise for outliers.
 constexpr double kKernelOverMedian = 4.5;
 // Along the surface closest points say nothing: a slight hold against sliding between rounds.
@@ -57,6 +59,38 @@ double medianResidual(const std::vector<PointTarget>& targets, std::size_t count
   return *middle;
 }
 
+/// Holes of a scan, nostrils and lips are unseen, too, but move with the skin around them: small unseen parts that
+/// touch what is seen count as seen. Were they stiff, they would hold the skin beside them.
+void fillHoles(const Eigen::MatrixX3d& positions, const Eigen::MatrixX3i& triangles, std::vector<bool>& seen) {
+  const auto vertices = static_cast<std::size_t>(positions.rows());
+  std::vector<int> rank(vertices), parent(vertices);
+  boost::disjoint_sets<int*, int*> parts(rank.data(), parent.data());
+  for (std::size_t v = 0; v < vertices; ++v) parts.make_set(static_cast<int>(v));
+  std::vector<bool> beside_seen(vertices, false), touches(vertices, false);
+  std::vector<double> areas(vertices, 0.0);
+  double seen_area = 0.0;
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    if (seen[static_cast<std::size_t>(t)]) {
+      seen_area += triangleArea(positions, triangles, t);
+      for (int k = 0; k < 3; ++k) beside_seen[static_cast<std::size_t>(triangles(t, k))] = true;
+    } else {
+      parts.union_set(triangles(t, 0), triangles(t, 1));
+      parts.union_set(triangles(t, 0), triangles(t, 2));
+    }
+  }
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    if (seen[static_cast<std::size_t>(t)]) continue;
+    const auto part = static_cast<std::size_t>(parts.find_set(triangles(t, 0)));
+    areas[part] += triangleArea(positions, triangles, t);
+    for (int k = 0; k < 3; ++k) touches[part] = touches[part] || beside_seen[static_cast<std::size_t>(triangles(t, k))];
+  }
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    if (seen[static_cast<std::size_t>(t)]) continue;
+    const auto part = static_cast<std::size_t>(parts.find_set(triangles(t, 0)));
+    if (touches[part] && areas[part] < kSmallHole * seen_area) seen[static_cast<std::size_t>(t)] = true;
+  }
+}
+
 }  // namespace
 
 Eigen::VectorXd BentSurface::seenVertices() const {
@@ -80,7 +114,9 @@ std::vector<bool> seenTriangles(const Eigen::MatrixX3d& positions, const Eigen::
         scan.surface().closestFacing(centre.transpose(), normals.row(row).transpose(), kLeastCosine, reach);
     found[t] = match.found() && !scan.surface().onBorder(match) ? 1 : 0;
   });
-  return {found.begin(), found.end()};
+  std::vector<bool> seen(found.begin(), found.end());
+  fillHoles(positions, triangles, seen);
+  return seen;
 }
 
 Stiffness stiffnessAt(double length, double membrane_share, double anchor, const BentSurface& surface) {

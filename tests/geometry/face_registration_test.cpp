@@ -133,6 +133,24 @@ TEST(FaceRegistration, TrianglesBeyondTheScanAreNotSeen) {
   EXPECT_LT(left, 2 * 2 * kSide) << "all but the rim";
 }
 
+TEST(FaceRegistration, HolesOfAScanAreSeenSinceTheSkinAroundThemIs) {
+  const Subject subject;
+  std::vector<int> rows;
+  for (int t = 0; t < subject.scan_mesh.triangles.rows(); ++t) {
+    const int v = subject.scan_mesh.triangles(t, 0);
+    if (std::hypot(v % 90 - 45, v / 90 - 45) > 8.0) rows.push_back(t);
+  }
+  const ScanSurface scan(subject.scan_mesh.positions, subject.scan_mesh.triangles(rows, Eigen::all));
+  const auto seen =
+      seenTriangles(subject.motion.apply(face(kSide, 0.6).positions), subject.neutral.triangles, scan, 2.0);
+  int unseen = 0;
+  for (std::size_t t = 0; t < seen.size(); ++t) {
+    const int v = subject.neutral.triangles(static_cast<Eigen::Index>(t), 0);
+    if (std::hypot(v % kSide - 20, v / kSide - 20) < 8.0) unseen += seen[t] ? 0 : 1;
+  }
+  EXPECT_EQ(unseen, 0);
+}
+
 TEST(FaceRegistration, TheHeadsMotionIsToldFromWhatTheModelCannotDo) {
   const Subject subject;
   ModelPose truth;

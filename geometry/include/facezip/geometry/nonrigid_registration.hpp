@@ -23,7 +23,7 @@ struct BentSurface {
   Eigen::VectorXd seenVertices() const;
 };
 
-/// Triangles whose centres have a scan before them that is not just its border.
+/// Triangles whose centres have a scan before them that is not just its border; and those of small holes between them.
 /// reach  millimetres
 std::vector<bool> seenTriangles(const Eigen::MatrixX3d& positions, const Eigen::MatrixX3i& triangles,
                                 const ScanSurface& scan, double reach = 15.0);

@@ -32,6 +32,17 @@ void printWeights(const Package& package, std::size_t set) {
       weights.columns, weights.rows, fmt::join(weights.files, ", "));
 }
 
+/// What the textures of a map are stored as: "8-bit, ..., differences in 8 bits", or the blocks of either.
+std::string storage(const PackageMap& map) {
+  const auto blocks = [](const std::optional<BlockFormat>& format) {
+    return format ? fmt::format("{} blocks", blockFormatName(*format)) : "";
+  };
+  const std::string neutral = blocks(map.neutral_format);
+  const std::string difference = blocks(map.differences.front().format);
+  return fmt::format("{}{}, differences in {}", neutral.empty() ? "" : ", neutral in ", neutral,
+                     difference.empty() ? fmt::format("{} bits", map.difference_bits) : difference);
+}
+
 void printPackage(const Package& package) {
   const auto plural = [](std::size_t count) { return count == 1 ? "" : "s"; };
   const std::size_t expressions = package.expressions().size();
@@ -39,9 +50,9 @@ void printPackage(const Package& package) {
   say("{}: {} expression{}, {} difference texture{} a map, made by {}\n", printable(package.name()), expressions,
       plural(expressions), differences, plural(differences), printable(package.description().generator));
   for (const PackageMap& map : package.maps()) {
-    say("  map {}: {} x {}, {} channel{}, {}{}{}, differences in {} bits, {} texels to a weight texel\n", map.name,
-        map.width, map.height, map.channels, map.channels == 1 ? "" : "s", sampleName(map.sample_type),
-        map.colour_space.empty() ? "" : ", ", map.colour_space, map.difference_bits, map.weight_scale);
+    say("  map {}: {} x {}, {} channel{}, {}{}{}{}, {} texels to a weight texel\n", map.name, map.width, map.height,
+        map.channels, map.channels == 1 ? "" : "s", sampleName(map.sample_type), map.colour_space.empty() ? "" : ", ",
+        map.colour_space, storage(map), map.weight_scale);
   }
   for (std::size_t set = 0; set < package.weightSets().size(); ++set) printWeights(package, set);
   say("  memory: {} at run time, {} on disk\n", formatMegabytes(package.bytesInMemory()),

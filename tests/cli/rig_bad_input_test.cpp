@@ -113,7 +113,7 @@ TEST_F(RigBadInput, NoTemplateNoNeutralNoShapes) {
   for (const char* name : test::kRigShapes) fs::remove(shapes() / (std::string(name) + ".obj"));
   expectFailure(cli::kExitInput, {"an OBJ file for each shape"});
   fs::remove(shapes() / "neutral.obj");
-  expectFailure(cli::kExitInput, {"neutral.obj or generic_neutral.obj"});
+  expectFailure(cli::kExitInput, {"neutral.obj, generic_neutral.obj or generic_neutral_mesh.obj"});
   fs::remove(shapes());
   expectFailure(cli::kExitInput, {"no such directory"});
 }

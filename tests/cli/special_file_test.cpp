@@ -51,7 +51,8 @@ class SpecialFiles : public testing::Test {
       const test::CommandResult result = runFacezip(arguments, "timeout 20");
       EXPECT_EQ(result.exit_code, cli::kExitInput) << file << ", " << special.name << ": " << result.error;
       EXPECT_THAT(result.error, HasSubstr(file.filename().string()));
-      EXPECT_THAT(result.error, HasSubstr(special.name)) << file;
+      // A special file may be put there by a link, which packages refuse whatever is behind it.
+      EXPECT_THAT(result.error, testing::AnyOf(HasSubstr(special.name), HasSubstr("a link"))) << file;
       EXPECT_EQ(result.out, "");
       EXPECT_EQ(test::filesBelow(folder_.path()), before) << file;
       fs::remove_all(file);

@@ -14,7 +14,11 @@ namespace facezip::test {
 class GuardedBuffer {
  public:
   GuardedBuffer(const device::DeviceContext& context, std::size_t bytes)
-      : context_(context), bytes_(bytes), buffer_(context.upload(fill(bytes + kGuard), "output and guard")) {}
+      : context_(context),
+        bytes_(bytes),
+        buffer_(context.allocate(bytes + kGuard, CL_MEM_READ_WRITE, "output and guard")) {
+    context.write(buffer_, fill(bytes + kGuard), "output and guard");
+  }
 
   const cl::Buffer& buffer() const { return buffer_; }
 

@@ -29,6 +29,9 @@ void requireSaneOptions(const CompressOptions& options) {
   require(options.mask_cutoff >= 0.0 && options.mask_cutoff < 1.0, "--mask-cutoff", "0 or more and below 1",
           fmt::format("{}", options.mask_cutoff));
   require(!options.masks || *options.masks >= 1, "--masks", "at least 1", fmt::format("{}", options.masks.value_or(0)));
+  require(!chooses || !options.texture_format, "--texture-format",
+          "png with a target or budget, which estimate images; choose --differences and --weight-scale for blocks",
+          options.texture_format ? std::string(blockFormatName(*options.texture_format)) : "");
   require(!options.difference_format || options.texture_format, "--difference-format",
           "a block --texture-format beside it", "png");
   // They are recorded as JSON.

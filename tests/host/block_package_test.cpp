@@ -186,6 +186,20 @@ TEST(BlockPackages, AreNotChosenByTargetsWhichEstimateImages) {
   EXPECT_FALSE(fs::exists(folder / "p"));
 }
 
+TEST(BlockPackages, OfTooFewChannelsAreRefusedBeforeTheWork) {
+  const test::TemporaryDirectory folder;
+  test::writeSmallCapture(folder / "c", {.expressions = 6});
+  Notes progress;
+  try {
+    compressCapture(openCapture(folder / "c"), folder / "p", smallOptions(BlockFormat::kBc5), testDevice(), progress);
+    FAIL() << "compressed";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("albedo"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("bc5"));
+  }
+  EXPECT_FALSE(fs::exists(folder / "p"));
+}
+
 TEST(BlockPackages, DoNotOpenWithAnotherTexture) {
   const test::TemporaryDirectory folder;
   test::writeSmallCapture(folder / "c", {.expressions = 6});

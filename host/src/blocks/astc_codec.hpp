@@ -7,7 +7,8 @@
 #include <memory>
 #include <span>
 
-#include "blocks/block_encoder.hpp"
+#include "blocks/block_format.hpp"
+#include "blocks/block_quality.hpp"
 
 struct astcenc_context;
 struct astcenc_swizzle;

@@ -9,7 +9,6 @@
 
 #include "blocks/astc_codec.hpp"
 #include "blocks/bc_decoder.hpp"
-#include "blocks/block_encoder.hpp"
 
 namespace facezip::blocks {
 namespace {

@@ -7,6 +7,7 @@
 
 #include <optional>
 
+#include "blocks/block_format.hpp"
 #include "compress/attempt.hpp"
 #include "compress/compress_options.hpp"
 #include "compress/compress_report.hpp"
@@ -76,6 +77,24 @@ void lookAgain(RateEstimate& estimate, const MapSet& maps, int band_rows, const 
   }
 }
 
+/// Blocks that do not hold the channels of a map are to be named before the work, too.
+void requireFormats(const PackageForm& form, const MapSet& maps) {
+  if (!form.blocks) return;
+  for (const OpenMap& map : maps.maps) {
+    const image::ImageShape& shape = map.samples->shape();
+    if (shape.type != SampleType::kUint8) continue;
+    for (const BlockFormat format : {form.blocks->neutral, form.blocks->differences}) {
+      try {
+        blocks::requireChannels(formatFor(format, shape.channels), shape.channels);
+      } catch (const InputError& error) {
+        InputError::Parts parts = error.parts();
+        parts.item = "map " + map.source->name;
+        throw InputError(parts);
+      }
+    }
+  }
+}
+
 /// Packages of the forms that a target asks for, one after the other, until one meets it; of the one form where there
 /// is no target.
 Attempt makePackages(const CompressionJob& job, RateSearch* rates, io::StagedDirectory& staged) {
@@ -123,6 +142,7 @@ CompressReport compressCapture(const Capture& capture, const fs::path& package, 
   const std::size_t weight_sets = options.weights_per_map ? maps.maps.size() : 1;
   std::optional<RateSearch> rates = searchRates(options, maps, weight_sets);
   const PackageForm first_form = rates ? formOf(rates->smallest()) : formOf(options);
+  requireFormats(first_form, maps);
   const auto groups = groupMaps(maps, options.weights_per_map, first_form.weight_scale);
   const MemoryPlan memory(maps, slots, static_cast<int>(weight_sets), run);
   requireMemory(options, memory, first_form, groups);

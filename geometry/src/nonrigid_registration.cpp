@@ -139,7 +139,7 @@ Eigen::MatrixX3d registerNonRigid(const BentSurface& surface, const Eigen::Matri
   const Eigen::VectorXd density = surface.seenVertices();
   const Eigen::VectorXd areas = vertexAreas(surface.reference, triangles);
   Eigen::MatrixX3d x = start;
-  double kernel = options.first_kernel;
+  double kernel = options.first_kernel, median = 0.0;
   std::vector<int> point_hints, sample_hints;
   for (int step = 0; step < options.steps; ++step) {
     const bool last = step + 1 == options.steps;
@@ -159,7 +159,7 @@ Eigen::MatrixX3d registerNonRigid(const BentSurface& surface, const Eigen::Matri
       }
       const std::size_t matches = targets.size();
       addLandmarks(landmarks, x, vertexNormals(x, triangles),
-                   last ? kLastLandmarkWeight : kLandmarkWeight * length * length, targets);
+                   options.landmark_share * (last ? kLastLandmarkWeight : kLandmarkWeight * length * length), targets);
       for (Eigen::Index v = 0; v < x.rows(); ++v) {
         if (density[v] == 0.0) continue;
         const int vertex = static_cast<int>(v);
@@ -168,9 +168,11 @@ Eigen::MatrixX3d registerNonRigid(const BentSurface& surface, const Eigen::Matri
       }
       const Eigen::MatrixX3d before = x;
       x = deformation.solve(targets, rest, x, 20);
-      kernel = std::max(options.last_kernel, kKernelOverMedian * medianResidual(targets, matches, x));
+      median = medianResidual(targets, matches, x);
+      kernel = std::max(options.last_kernel, kKernelOverMedian * median);
       if ((x - before).rowwise().norm().mean() < kConverged) break;
     }
+    if (median <= scan.judged().roughness) break;
   }
   return x;
 }

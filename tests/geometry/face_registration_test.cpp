@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <random>
 
 #include "facezip/error.hpp"
 #include "facezip/geometry/mesh_edges.hpp"
@@ -112,6 +113,36 @@ TEST(FaceRegistration, BendsAMeshOntoAScanWithSpikesAndHoles) {
     }
   }
   EXPECT_LT(worst, 0.6);
+}
+
+TEST(FaceRegistration, BendingEndsAtTheScansNoise) {
+  Subject subject;
+  std::mt19937 random(7);
+  for (auto row : subject.scan_mesh.positions.rowwise()) {
+    double sum = -6.0;  // of twelve uniform numbers: normal, nearly
+    for (int i = 0; i < 12; ++i) sum += static_cast<double>(random()) / 4294967296.0;
+    row[2] += 0.2 * sum;
+  }
+  const ScanSurface scan(subject.scan_mesh.positions, subject.scan_mesh.triangles);
+  const Eigen::MatrixX3d truth = subject.motion.apply(face(kSide, 0.6).positions);
+  BentSurface surface{truth, subject.surface, seenTriangles(truth, subject.surface.triangles, scan)};
+  const Eigen::MatrixX3d bent = registerNonRigid(surface, truth, scan, {}, {});
+  EXPECT_LT((bent - truth).rowwise().norm().mean(), 0.03);
+}
+
+TEST(FaceRegistration, ClicksMoveASureStartLittle) {
+  const Subject subject;
+  const ScanSurface scan(subject.scan_mesh.positions, subject.scan_mesh.triangles);
+  const Eigen::MatrixX3d truth = subject.motion.apply(face(kSide, 0.6).positions);
+  BentSurface surface{truth, subject.surface, seenTriangles(truth, subject.surface.triangles, scan)};
+  NonRigidOptions options;
+  const auto drift = [&] {
+    return (registerNonRigid(surface, truth, scan, subject.landmarks, options) - truth).rowwise().norm().mean();
+  };
+  const double usual = drift();
+  options.landmark_share = 0.004;
+  const double sure = drift();
+  EXPECT_LT(sure, 0.3 * usual) << usual;
 }
 
 TEST(FaceRegistration, TrianglesBeyondTheScanAreNotSeen) {

@@ -22,6 +22,7 @@ constexpr double kIdentityBound = 3.0;       // standard deviations
 constexpr double kFitReach = 10.0;
 constexpr double kLeastMatched = 0.4;
 constexpr double kLargestMean = 4.0;
+constexpr double kClick = 1.0;  // that clicks are off, millimetres
 
 geometry::MatchedSurface wholeSurface(const Eigen::MatrixX3i& triangles) {
   return {triangles, std::vector<bool>(static_cast<std::size_t>(triangles.rows()), true)};
@@ -37,6 +38,12 @@ void requireFit(const geometry::ScanResidual& residual, const PlacedScan& placed
 
 geometry::ModelPose startOf(const geometry::LinearModel& model, const geometry::Similarity& motion) {
   return {motion, Eigen::VectorXd::Zero(model.modes())};
+}
+
+/// A model that fits the scan to a tenth of what clicks are off lies better along the skin, too, than they do.
+double landmarkShare(const geometry::ScanResidual& model) {
+  const double share = model.mean / kClick;
+  return std::min(1.0, share * share);
 }
 
 std::vector<Eigen::MatrixX3d> scaled(const std::vector<Eigen::MatrixX3d>& displacements, double scale) {
@@ -80,8 +87,10 @@ RegisteredSubject registerNeutral(const RegistrationTemplate& source, double mil
   const geometry::ScanResidual model_residual = geometry::residualOf(surface, posed, placed.surface, kFitReach);
   requireFit(model_residual, placed);
 
+  geometry::NonRigidOptions bend;
+  bend.landmark_share = landmarkShare(model_residual);
   const Eigen::MatrixX3d bent =
-      geometry::registerNonRigid(surface, posed, placed.surface, placed.landmarks, {}, cancel);
+      geometry::registerNonRigid(surface, posed, placed.surface, placed.landmarks, bend, cancel);
   const geometry::ScanResidual residual = geometry::residualOf(surface, bent, placed.surface);
   const double scale = pose.motion.scale;
   pose.motion.scale = 1.0;
@@ -119,6 +128,7 @@ RegisteredExpression registerExpression(const RegisteredSubject& subject, const 
   bend.last_length = 3.0;
   bend.steps = 4;
   bend.first_kernel = 2.0;
+  bend.landmark_share = landmarkShare(expression.model_residual);
   expression.mesh = geometry::registerNonRigid(subject.surface, posed, placed.surface, placed.landmarks, bend, cancel);
   expression.residual = geometry::residualOf(subject.surface, expression.mesh, placed.surface);
   expression.pose = std::move(pose);

@@ -38,12 +38,13 @@ struct NonRigidOptions {
   int rounds = 7;              ///< of closest points in a step, at the most
   double first_kernel = 3.0;   ///< of the robust weights; it follows the residuals down to
   double last_kernel = 0.8;
+  double landmark_share = 1.0;  ///< of the landmarks' usual weight: less where the start is surer than clicks
 };
 
-/// Bends the mesh from `start` onto the scan. Smoothness is of what each step adds to the last one's result.
-/// landmarks  draw along the surface alone: how deep they lie, the scan says better
-/// round      called before each round; may be empty
-/// Throws SolverError.
+/// Bends the mesh from `start` onto the scan. Smoothness is of what each step adds to the last one's result. Ends
+/// before the last length once half of the matches lie within the scan's own roughness: a softer mesh would follow
+/// noise. landmarks  draw along the surface alone: how deep they lie, the scan says better round      called before
+/// each round; may be empty Throws SolverError.
 Eigen::MatrixX3d registerNonRigid(const BentSurface& surface, const Eigen::MatrixX3d& start, const ScanSurface& scan,
                                   const std::vector<Landmark>& landmarks, const NonRigidOptions& options,
                                   const std::function<void()>& round = {});

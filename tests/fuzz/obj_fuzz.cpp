@@ -27,7 +27,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::filesystem::path again = fuzz::folder() / "again.obj";
     geometry::writeObj(again, mesh);
     const geometry::TriangleMesh copy = geometry::readObj(again);
-    require(copy.positions == mesh.positions && copy.triangles == mesh.triangles && copy.uvs == mesh.uvs);
+    // tinyobjloader rounds the last digit of some numbers another way than they are written.
+    constexpr double kLastDigits = 1e-12;
+    require(copy.triangles == mesh.triangles && copy.positions.isApprox(mesh.positions, kLastDigits));
+    require(copy.uvs.rows() == mesh.uvs.rows() && (mesh.uvs.rows() == 0 || copy.uvs.isApprox(mesh.uvs, kLastDigits)));
     geometry::requireSameTopology(mesh, "mesh", mesh, "mesh");
   });
   return 0;

@@ -453,5 +453,22 @@ TEST(ImageWriter, UnknownExtensionIsAnInputError) {
   EXPECT_THROW(image::ImageWriter(folder / "a.nosuchformat", {4, 4, 3, image::SampleType::kUint8}), InputError);
 }
 
+TEST(ImageReader, AnExrAttributeLargerThanItsFileIsRefused) {
+  const test::TemporaryDirectory folder;
+  const std::filesystem::path file = folder / "a.exr";
+  image::writeImage(file, {{4, 4, 1, image::SampleType::kFloat32}, std::vector<std::byte>(64)});
+  std::string bytes = test::contentsOf(file);
+  const std::string type("chlist\0", 7);
+  const std::size_t size = bytes.find(type) + type.size();
+  bytes.replace(size, 4, "\xff\xff\xff\x7f");
+  std::ofstream(file, std::ios::binary) << bytes;
+  try {
+    image::ImageReader reader(file, InputFile(file, "an image"));
+    FAIL() << "opened";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("attributes end within its first MiB"));
+  }
+}
+
 }  // namespace
 }  // namespace facezip

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "facezip/error.hpp"
+#include "image/exr_header.hpp"
 #include "image/image_format.hpp"
 #include "image/output_formats.hpp"
 
@@ -52,6 +53,7 @@ ImageReader::ImageReader(fs::path path) : path_(std::move(path)), file_(path_, "
 
 ImageReader::ImageReader(fs::path path, InputFile file) : path_(std::move(path)), file_(std::move(file)) {
   if (path_.extension() == ".exr") {
+    requireExrHeader(file_, path_);
     input_ = anyFormat().openExr(path_, file_);
   } else {
     input_ = openPng(path_, file_);

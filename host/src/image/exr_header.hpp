@@ -1,0 +1,15 @@
+// exr_header.hpp - the attributes at the head of an EXR file, looked over before OpenEXR reads them: it takes as much
+// memory as an attribute says that it has, whatever the file holds.
+#pragma once
+
+#include <filesystem>
+
+#include "facezip/input_file.hpp"
+
+namespace facezip::image {
+
+/// Throws InputError where the attributes of the first image do not end within the file's first MiB.
+/// path  for messages
+void requireExrHeader(const InputFile& file, const std::filesystem::path& path);
+
+}  // namespace facezip::image

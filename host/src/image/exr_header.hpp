@@ -8,7 +8,7 @@
 
 namespace facezip::image {
 
-/// Throws InputError where the attributes of the first image do not end within the file's first MiB.
+/// Throws InputError where there are several images, or the attributes of the one do not end within the file's first MiB.
 /// path  for messages
 void requireExrHeader(const InputFile& file, const std::filesystem::path& path);
 

@@ -1,27 +1,13 @@
+#include "difference_texture_rows.hpp"
 #include "problems/difference_texture_range.hpp"
-#include "roof.hpp"
 
 namespace facezip::bench {
 namespace {
 
-/// Arguments: R, N, K. Four textures.
 void differenceTextureRange(benchmark::State& state) {
-  const auto side = static_cast<int>(state.range(0));
-  const auto mask_count = static_cast<int>(state.range(2));
-  const test::BandShape shape{side, side, 3, static_cast<int>(state.range(1)), image::SampleType::kUint8};
-  benchStep(state, test::DifferenceTextureRangeProblem(benchDevice(), shape, test::bumpMasks(side, mask_count),
-                                                       mask_count, 4));
+  benchDifferenceTexture<test::DifferenceTextureRangeProblem>(state);
 }
-BENCHMARK(differenceTextureRange)
-    ->Name("difference_texture_range")
-    ->ArgNames({"R", "N", "K"})
-    ->Args({256, 20, 53})
-    ->Args({1024, 20, 53})
-    ->Args({2048, 8, 53})
-    ->Args({1024, 20, 16})
-    ->Args({1024, 20, 128})
-    ->Args({512, 100, 53})
-    ->Apply(milliseconds);
+BENCHMARK(differenceTextureRange)->Name("difference_texture_range")->Apply(differenceTextureArguments);
 
 }  // namespace
 }  // namespace facezip::bench

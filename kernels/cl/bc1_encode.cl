@@ -35,30 +35,6 @@ inline floats codeable(const floats value, const int channel) {
   return code * widen + NEAREST(code * fold - 0.49f);
 }
 
-typedef struct {
-  floats along[DIMS], offset;  // texel to index
-  floats span[DIMS], start[DIMS];
-} Steps;
-
-inline Steps steps_of(const float levels, const floats scale[DIMS], const floats ends[2][DIMS]) {
-  Steps steps;
-  floats size = 0.0f;
-#pragma unroll
-  for (int k = 0; k < DIMS; ++k) {
-    steps.span[k] = ends[1][k] - ends[0][k];
-    steps.start[k] = ends[0][k] + HALF_UP;
-    size += scale[k] * steps.span[k] * steps.span[k];
-  }
-  const floats per = size > 1e-3f ? levels / max(size, (floats)(1e-3f)) : (floats)(0.0f);
-  steps.offset = 0.0f;
-#pragma unroll
-  for (int k = 0; k < DIMS; ++k) {
-    steps.along[k] = scale[k] * steps.span[k] * per;
-    steps.offset -= steps.along[k] * ends[0][k];
-  }
-  return steps;
-}
-
 inline floats nearest_index(const float levels, const Steps steps, const floats* x, const int t) {
   floats at = steps.offset;
 #pragma unroll
@@ -68,7 +44,7 @@ inline floats nearest_index(const float levels, const Steps steps, const floats*
 
 inline StepSums assign(const float levels, const floats* x, const floats* w, const floats scale[DIMS],
                        const floats ends[2][DIMS]) {
-  const Steps steps = steps_of(levels, scale, ends);
+  const Steps steps = steps_of(levels, 0.0f, scale, ends);
   StepSums sums;
   sums.s = sums.ss = sums.error = 0.0f;
 #pragma unroll
@@ -183,8 +159,8 @@ kernel void bc1_encode(const Layout layout, global const int2* restrict tiles, g
   const uints word1 = word_of(line.ends[1], mean);
   // Four colours have the larger word first, three colours the smaller one.
   const ints swap = in_three ? word0 > word1 : word0 < word1;
-  const Steps steps3 = steps_of(3.0f, scale, line.ends);
-  const Steps steps2 = steps_of(2.0f, scale, line.ends);
+  const Steps steps3 = steps_of(3.0f, 0.0f, scale, line.ends);
+  const Steps steps2 = steps_of(2.0f, 0.0f, scale, line.ends);
   uints indices = 0u;
   for (int t = 0; t < 16; ++t) {
     const ints of_four = TO_INTS(nearest_index(3.0f, steps3, x, t));

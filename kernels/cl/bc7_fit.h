@@ -52,29 +52,9 @@ inline void take_line(const ints where, const Line from, Line* to) {
   }
 }
 
-// What finds the step of a texel and decodes it.
-typedef struct {
-  floats along[DIMS], offset;  // texel to index
-  floats span[DIMS], start[DIMS];
-} Steps;
-
-inline Steps steps_of(const Coding coding, const floats scale[DIMS], const floats ends[2][DIMS]) {
-  Steps steps;
-  floats size = 0.0f;
-#pragma unroll
-  for (int k = 0; k < DIMS; ++k) {
-    steps.span[k] = ends[1][k] - ends[0][k];
-    steps.start[k] = ends[0][k] + HALF_UP;
-    size += scale[k] * steps.span[k] * steps.span[k];
-  }
-  const floats per = size > 1e-3f ? coding.levels / max(size, (floats)(1e-3f)) : (floats)(0.0f);
-  steps.offset = NEARBY ? -0.5f : 0.0f;
-#pragma unroll
-  for (int k = 0; k < DIMS; ++k) {
-    steps.along[k] = scale[k] * steps.span[k] * per;
-    steps.offset -= steps.along[k] * ends[0][k];
-  }
-  return steps;
+// With neighbours to be tried, an index is rounded down.
+inline Steps steps_between(const Coding coding, const floats scale[DIMS], const floats ends[2][DIMS]) {
+  return steps_of(coding.levels, NEARBY ? -0.5f : 0.0f, scale, ends);
 }
 
 inline floats decoded_channel(const Steps steps, const floats step, const int k) {
@@ -118,7 +98,7 @@ inline floats nearest_index(const Coding coding, const Steps steps, const floats
 
 inline StepSums assign(const Coding coding, const floats* x, const floats* w, const floats scale[DIMS],
                        const floats ends[2][DIMS]) {
-  const Steps steps = steps_of(coding, scale, ends);
+  const Steps steps = steps_between(coding, scale, ends);
   StepSums sums;
   sums.s = sums.ss = sums.error = 0.0f;
 #pragma unroll

@@ -107,7 +107,7 @@ inline void find_indices(const Choice choice, const Fields fields, const floats*
       ends[0][k] = choice.values[part][0][k] - part_mean[k];
       ends[1][k] = choice.values[part][1][k] - part_mean[k];
     }
-    const Steps steps = steps_of(coding, part_scale, ends);
+    const Steps steps = steps_between(coding, part_scale, ends);
     const ints plane = part == 1 ? fields.dual : (ints)(0);
     for (int t = 0; t < 16; ++t) {
       floats texel[DIMS];

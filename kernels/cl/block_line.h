@@ -141,4 +141,30 @@ inline EndSystem solve_ends(const StepSums steps, const TexelSums sums) {
   return system;
 }
 
+// What finds the step of a texel between two ends, and decodes it.
+typedef struct {
+  floats along[DIMS], offset;  // texel to index
+  floats span[DIMS], start[DIMS];
+} Steps;
+
+// levels  steps between the ends; offset  added to every index before it is rounded
+inline Steps steps_of(const floats levels, const float offset, const floats scale[DIMS], const floats ends[2][DIMS]) {
+  Steps steps;
+  floats size = 0.0f;
+#pragma unroll
+  for (int k = 0; k < DIMS; ++k) {
+    steps.span[k] = ends[1][k] - ends[0][k];
+    steps.start[k] = ends[0][k] + HALF_UP;
+    size += scale[k] * steps.span[k] * steps.span[k];
+  }
+  const floats per = size > 1e-3f ? levels / max(size, (floats)(1e-3f)) : (floats)(0.0f);
+  steps.offset = offset;
+#pragma unroll
+  for (int k = 0; k < DIMS; ++k) {
+    steps.along[k] = scale[k] * steps.span[k] * per;
+    steps.offset -= steps.along[k] * ends[0][k];
+  }
+  return steps;
+}
+
 #endif

@@ -2,6 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
 #include "blocks/block_decoder.hpp"
 #include "blocks/block_encoder.hpp"
 #include "blocks/texture_file.hpp"
@@ -218,6 +222,70 @@ TEST(BlockPackages, DoNotOpenWithAnotherTexture) {
   }
   fs::resize_file(folder / "q/albedo/neutral.ktx2", fs::file_size(folder / "q/albedo/neutral.ktx2") - 1);
   EXPECT_THROW(Package::open(folder / "q"), InputError);
+}
+
+TEST(BlockPackages, SayWhatIsWrongInTheirDescription) {
+  const test::TemporaryDirectory folder;
+  test::writeSmallCapture(folder / "c", {.expressions = 6});
+  Progress progress;
+  compressCapture(openCapture(folder / "c"), folder / "p", smallOptions(BlockFormat::kBc7), testDevice(), progress);
+  const fs::path file = folder / "p/package.json";
+  const nlohmann::json good = nlohmann::json::parse(test::contentsOf(file));
+  EXPECT_EQ(good["version"], 3);
+  const auto refusal = [&](const std::string& field, const nlohmann::json& value) {
+    nlohmann::json bad = good;
+    bad[nlohmann::json::json_pointer(field)] = value;
+    std::ofstream(file) << bad;
+    try {
+      Package::open(folder / "p");
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("opened");
+  };
+  EXPECT_EQ(refusal("/name", "another"), "opened");
+  EXPECT_THAT(refusal("/version", 2), testing::HasSubstr("version: expected 3, for textures in blocks"));
+  EXPECT_THAT(refusal("/maps/0/neutral/format", "bc9"),
+              testing::HasSubstr("maps[0].neutral.format: expected one of bc1"));
+  EXPECT_THAT(refusal("/maps/0/neutral/format", "bc5"), testing::HasSubstr("a format of 3 channels"));
+  EXPECT_THAT(refusal("/maps/0/neutral/file", "albedo/neutral.png"), testing::HasSubstr("the name of a .ktx2 file"));
+  EXPECT_THAT(refusal("/maps/0/sample_type", "16-bit"), testing::HasSubstr("blocks hold maps of 8 bits"));
+  EXPECT_THAT(refusal("/maps/0/difference_bits", 16), testing::HasSubstr("none beside difference_bits of 16"));
+  EXPECT_THAT(refusal("/maps/0/differences/1/format", "bc1"), testing::HasSubstr("difference_1.ktx2"));
+}
+
+TEST(EveryTexture, IsMeasuredInBlocksOfItsOwn) {
+  const test::TemporaryDirectory folder;
+  test::writeSmallCapture(folder / "c", {.expressions = 3});
+  Progress progress;
+  const Capture capture = openCapture(folder / "c");
+  compressCapture(capture, folder / "p", smallOptions(), testDevice(), progress);
+  const Package package = Package::open(folder / "p");
+  EvaluateOptions options;
+  options.methods = {};
+  options.every_texture = {BlockFormat::kBc1, BlockFormat::kAstc6x6};
+  const Evaluation evaluation = evaluatePackage(capture, package, options, testDevice(), progress);
+  EXPECT_EQ(evaluation.bytes.at("every-bc1"), 4u * 80 * 80 / 2);
+  EXPECT_EQ(evaluation.bytes.at("every-astc-6x6"), 4u * 14 * 14 * 16);
+
+  // The one texture that is covered most, coded here: what is reported is of its covered texels alone.
+  image::Image texture = image::readImage(capture.maps[0].expressions[1]);
+  blocks::EncoderOptions coding;
+  coding.format = BlockFormat::kBc1;
+  const std::span samples(reinterpret_cast<const std::uint8_t*>(texture.samples.data()), texture.samples.size());
+  std::vector<std::byte> coded(blocks::blockBytes(coding.format, 80, 80));
+  std::vector<float> decoded(samples.size());
+  blocks::makeBlockEncoder(testDevice().context(), coding)->encode({80, 80, 3, samples, {}}, coded, decoded);
+  double sum = 0.0, count = 0.0;
+  for (int y = 8; y < 72; ++y) {  // UVs fill a tenth to nine tenths
+    for (int x = 8; x < 72; ++x) {
+      for (std::size_t s = static_cast<std::size_t>(3 * (80 * y + x)), end = s + 3; s < end; ++s, ++count) {
+        const double error = static_cast<double>(decoded[s]) - samples[s];
+        sum += error * error;
+      }
+    }
+  }
+  EXPECT_NEAR(evaluation.maps[0].rmse.at("every-bc1").per_expression[1], std::sqrt(sum / count), 1e-3);
 }
 
 }  // namespace

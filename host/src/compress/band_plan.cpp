@@ -20,9 +20,9 @@ constexpr std::uint64_t kUsefulWindowBytes = 192 * kMiB;
 constexpr int kTypicalMasksPerTile = 16;
 
 /// What a window of the refinement keeps of one map, per row of its image.
-BandCost windowCost(const GridMap& map, const WeightSpace& space, bool blocks) {
+BandCost windowCost(const GridMap& map, const WeightSpace& space, bool in_blocks) {
   BandShape shape = bandShape(*map.map->samples, 0);
-  shape.neutral_decoded = blocks;
+  shape.neutral_decoded = in_blocks;
   const auto tiles = static_cast<std::uint64_t>((shape.width + kTileSide - 1) / kTileSide);
   const std::uint64_t samples = tiles * kTileSide * static_cast<std::uint64_t>(shape.channels) *
                                 (static_cast<std::uint64_t>(shape.expressions) + 1) *
@@ -54,8 +54,8 @@ BandCost bandCost(const BandShape& shape, int textures, int mask_count) {
   const std::uint64_t factors = shape.neutral_decoded
                                     ? texels * sizeof(float) *
                                           static_cast<std::uint64_t>(FACEZIP_FACTOR_PLANES(textures, shape.channels) +
-                                                                     2 * shape.channels * textures)
-                                    : 0;  // and codes, decoded textures
+                                                                     2 * shape.channels * (textures + 1))
+                                    : 0;  // and codes, decoded textures; the decoded neutral on host and device
   BandCost cost;
   // Samples: one band being decoded, one at work, one on the device. Masks: on the host and on the device.
   cost.per_row = 3 * samples + differences + 2 * masks + raster + outputs + factors;
@@ -99,7 +99,7 @@ int planWindowRows(std::span<const GridMap> maps, const WeightSpace& space, cons
   const GridMap& finest = *std::ranges::max_element(maps, {}, &GridMap::weight_scale);
   const auto finest_scale = static_cast<std::uint64_t>(finest.weight_scale);
   for (const GridMap& map : maps) {
-    const BandCost one = windowCost(map, space, form.blocks);
+    const BandCost one = windowCost(map, space, form.block_rows > 0);
     const auto scale = static_cast<std::uint64_t>(map.weight_scale);
     cost.per_row += one.per_row * scale / finest_scale;
     cost.largest_buffer_per_row =
@@ -112,7 +112,8 @@ int planWindowRows(std::span<const GridMap> maps, const WeightSpace& space, cons
   }
   // Windows begin at whole tiles of every map and whole cells: 1008 rows for a scale of 63, where 64 has 64.
   cost.row_step = windowRowStep(maps) * finest.weight_scale;
-  cost.rows_beside = 2 * windowHalo(finest.weight_scale);
+  // Either end of a window reaches on to whole rows of blocks.
+  cost.rows_beside = 2 * (windowHalo(finest.weight_scale) + form.block_rows);
   return planBandRows(cost, finest.map->samples->shape().height, memory_bytes, resident_bytes, device) /
          finest.weight_scale;
 }

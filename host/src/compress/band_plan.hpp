@@ -36,7 +36,7 @@ int planBandRows(const BandCost& cost, int height, std::uint64_t memory_bytes, s
 /// What windows of the refinement hold besides texels.
 struct WindowForm {
   bool half_cells = false;  ///< whether the sweeps are made on half cells
-  bool blocks = false;      ///< whether weights are fitted to coded textures, too
+  int block_rows = 0;       ///< where weights are fitted to coded textures, too: rows that their blocks fill
 };
 
 /// Rows of cells that a window of the refinement frees: a multiple of windowRowStep(maps), so that the windows of all

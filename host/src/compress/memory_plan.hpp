@@ -27,7 +27,7 @@ class MemoryPlan {
   int windowRows(const PackageForm& form, std::span<const GridMap> group) const;
 
  private:
-  std::uint64_t residentBytes(const WeightSpace& space) const;
+  std::uint64_t residentBytes(const PackageForm& form) const;
 
   const MapSet& maps_;
   const GramSlots& slots_;

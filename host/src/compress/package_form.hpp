@@ -13,7 +13,6 @@ namespace facezip::compress {
 struct TextureFormats {
   BlockFormat neutral = BlockFormat::kBc7;
   BlockFormat differences = BlockFormat::kBc7;
-  bool operator==(const TextureFormats&) const = default;
 };
 
 /// The format in which a map of so many channels gets what was asked for: BC4 and BC5 have one and two channels, which

@@ -1,14 +1,12 @@
 #include "io/file_pieces.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cstdint>
+#include <span>
 #include <string>
-#include <system_error>
 
 #include "facezip/error.hpp"
+#include "io/file_at.hpp"
 
 namespace facezip::io {
 
@@ -17,16 +15,8 @@ void forEachPiece(const InputFile& file, const std::string& path, std::size_t by
   std::string piece;
   for (std::uintmax_t done = 0; done < file.size(); done += piece.size()) {
     piece.resize(static_cast<std::size_t>(std::min<std::uintmax_t>(bytes, file.size() - done)));
-    for (std::size_t filled = 0; filled < piece.size();) {
-      const ssize_t got =
-          ::pread(file.descriptor(), piece.data() + filled, piece.size() - filled, static_cast<off_t>(done + filled));
-      if (got < 0 && errno == EINTR) continue;
-      if (got <= 0) {
-        throw InputError({path, "", "a file that can be read to its end",
-                          got == 0 ? "one that was cut" : std::system_category().message(errno), ""});
-      }
-      filled += static_cast<std::size_t>(got);
-    }
+    const std::string fault = readAt(file.descriptor(), done, std::as_writable_bytes(std::span(piece)));
+    if (!fault.empty()) throw InputError({path, "", "a file that can be read to its end", fault, ""});
     visit(piece);
   }
 }

@@ -58,8 +58,6 @@ CodedTextures::CodedTextures(device::DeviceContext& context, const WeightSpace& 
   }
 }
 
-CodedTextures::~CodedTextures() = default;
-
 void CodedTextures::setTiles(const TileMasks& masks) {
   positions_ = masks.tiles;
   block_weights_ = blockWeights(masks);

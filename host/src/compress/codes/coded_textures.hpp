@@ -28,7 +28,6 @@ class CodedTextures {
   /// keep_blocks  whether blocks() is asked for
   CodedTextures(device::DeviceContext& context, const WeightSpace& space, TextureCoding coding, blocks::Quality quality,
                 bool keep_blocks);
-  ~CodedTextures();
 
   /// The tiles that the next compute() is of; may go afterwards.
   /// masks  raster::activeTiles(), weighed or not
@@ -39,7 +38,6 @@ class CodedTextures {
   /// ridge  as DifferenceFit::compute() takes it
   const cl::Buffer& compute(const GridBand& band, const WeightWindow& window, float ridge);
 
-  const cl::Buffer& textures() const { return textures_.buffer(); }
   /// What the last compute() leaves in every tile. Waits.
   std::vector<FitError> errors();
   /// Blocks of a texture of the last band, [block row][block column].

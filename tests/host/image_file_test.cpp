@@ -453,21 +453,33 @@ TEST(ImageWriter, UnknownExtensionIsAnInputError) {
   EXPECT_THROW(image::ImageWriter(folder / "a.nosuchformat", {4, 4, 3, image::SampleType::kUint8}), InputError);
 }
 
-TEST(ImageReader, AnExrAttributeLargerThanItsFileIsRefused) {
+TEST(ImageReader, AnExrOfAPackageTakesNoMemoryByWhatItClaims) {
   const test::TemporaryDirectory folder;
   const std::filesystem::path file = folder / "a.exr";
   image::writeImage(file, {{4, 4, 1, image::SampleType::kFloat32}, std::vector<std::byte>(64)});
-  std::string bytes = test::contentsOf(file);
-  const std::string type("chlist\0", 7);
-  const std::size_t size = bytes.find(type) + type.size();
-  bytes.replace(size, 4, "\xff\xff\xff\x7f");
-  std::ofstream(file, std::ios::binary) << bytes;
-  try {
-    image::ImageReader reader(file, InputFile(file, "an image"));
-    FAIL() << "opened";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("attributes end within its first MiB"));
+  const std::string good = test::contentsOf(file);
+  const auto refusal = [&](const std::string& type, std::size_t behind, const std::string& bytes) {
+    std::string bad = good;
+    bad.replace(bad.find(type + '\0') + type.size() + 1 + behind, bytes.size(), bytes);
+    std::ofstream(file, std::ios::binary) << bad;
+    try {
+      image::ImageReader reader(file, InputFile(file, "an image"));
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("opened");
+  };
+  EXPECT_EQ(refusal("chlist", 0, ""), "opened");
+  constexpr std::size_t kSize = 4;  // of the attribute, in front of its data
+  for (const std::string& message : {refusal("chlist", 0, "\xff\xff\xff\x7f"),                  // larger than the file
+                                     refusal("box2i", kSize + 8, "\xff\xff\xff\x7f"),           // 2^31 columns
+                                     refusal("compression", 12 + kSize, std::string(1, 9))}) {  // DWAB
+    EXPECT_THAT(message, testing::HasSubstr("any compression but DWA"));
   }
+  std::string several = good;
+  several[5] = '\x10';
+  std::ofstream(file, std::ios::binary) << several;
+  EXPECT_THROW(image::ImageReader(file, InputFile(file, "an image")), InputError);
 }
 
 }  // namespace

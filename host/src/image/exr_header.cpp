@@ -64,13 +64,19 @@ constexpr FixedSize kFixedSizes[] = {{"box2f", 16},
                                      {"v3f", 12},
                                      {"v3i", 12}};
 
+/// What OpenEXR takes memory by when it opens an image: so many samples of a row, times rows that are packed together,
+/// 256 by DWA and 32 at most by all others.
+constexpr int kMostSide = 65536;
+constexpr int kMostChannels = 4;
+constexpr unsigned char kFirstDwa = 8;
+
 /// Channels are a name and 16 bytes each; an empty name ends them, and the attribute.
 bool channelsFill(const std::vector<char>& bytes, std::size_t begin, std::size_t end) {
   constexpr std::size_t kChannel = 16;
   std::size_t at = begin;
-  while (at < end && bytes[at] != '\0') {
+  for (int channels = 0; at < end && bytes[at] != '\0'; ++channels) {
     at = behindText(bytes, at);
-    if (at == 0 || at > end || end - at < kChannel) return false;
+    if (at == 0 || at > end || end - at < kChannel || channels == kMostChannels) return false;
     at += kChannel;
   }
   return at + 1 == end;
@@ -95,6 +101,17 @@ bool textsFill(const std::vector<char>& bytes, std::size_t begin, std::size_t en
   return at == end;
 }
 
+/// First and last column and row, of which a side has 1 to kMostSide.
+bool windowIsBounded(const std::vector<char>& bytes, std::size_t begin) {
+  for (const std::size_t axis : {0u, 4u}) {
+    const auto first = static_cast<std::int32_t>(numberAt(bytes, begin + axis));
+    const auto last = static_cast<std::int32_t>(numberAt(bytes, begin + 8 + axis));
+    const std::int64_t side = std::int64_t{last} - first + 1;
+    if (side < 1 || side > kMostSide) return false;
+  }
+  return true;
+}
+
 /// Whether what OpenEXR reads of an attribute is as much as it says.
 bool fills(std::string_view type, const std::vector<char>& bytes, std::size_t begin, std::size_t size) {
   if (type == "chlist") return channelsFill(bytes, begin, begin + size);
@@ -105,11 +122,13 @@ bool fills(std::string_view type, const std::vector<char>& bytes, std::size_t be
   return fixed == std::end(kFixedSizes) || fixed->bytes == size;
 }
 
-/// Attributes are a name, a type, a size in 4 bytes, and as much data; an empty name ends them.
-bool attributesEnd(const std::vector<char>& bytes) {
+/// Attributes are a name, a type, a size in 4 bytes, and as much data; an empty name ends them. Whether they do, and
+/// OpenEXR reads them as they say, and takes no more memory by them than the limits allow.
+bool isBounded(const std::vector<char>& bytes) {
   std::size_t at = kBeforeAttributes;
   while (at < bytes.size()) {
     if (bytes[at] == '\0') return true;
+    const std::size_t begin = at;
     const std::size_t type = behindText(bytes, at);
     if (type == 0) return false;
     at = behindText(bytes, type);
@@ -117,6 +136,9 @@ bool attributesEnd(const std::vector<char>& bytes) {
     const std::uint32_t size = numberAt(bytes, at);
     at += sizeof(size);
     if (size > bytes.size() - at || !fills(&bytes[type], bytes, at, size)) return false;
+    const std::string_view name = &bytes[begin];
+    if (name == "dataWindow" && (size != 16 || !windowIsBounded(bytes, at))) return false;
+    if (name == "compression" && (size != 1 || static_cast<unsigned char>(bytes[at]) >= kFirstDwa)) return false;
     at += size;
   }
   return false;
@@ -131,8 +153,11 @@ void requireExrHeader(const InputFile& file, const std::filesystem::path& path) 
   if (bytes.size() >= kBeforeAttributes && (numberAt(bytes, 4) & kSeveralImages) != 0) {
     throw InputError({path.string(), "", "an EXR file", "several images in one file", ""});
   }
-  if (!attributesEnd(bytes)) {
-    throw InputError({path.string(), "", "an EXR file whose attributes end within its first MiB", "none", ""});
+  if (!isBounded(bytes)) {
+    throw InputError({path.string(), "",
+                      "an EXR file of up to 4 channels, 65536 texels a side and any compression but DWA, whose "
+                      "attributes end within its first MiB",
+                      "another, or a damaged one", "write the package again"});
   }
 }
 

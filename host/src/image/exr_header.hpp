@@ -8,7 +8,8 @@
 
 namespace facezip::image {
 
-/// Throws InputError where there are several images, or the attributes of the one do not end within the file's first MiB.
+/// Throws InputError where there are several images, the attributes of the one do not end within the
+/// file's first MiB, or it has more channels or a larger side than packages, or DWA's blocks of 256 rows.
 /// path  for messages
 void requireExrHeader(const InputFile& file, const std::filesystem::path& path);
 

@@ -189,9 +189,10 @@ void printEvaluation(const Evaluation& evaluation) {
   printSeconds(evaluation.seconds);
 }
 
-void printRigReport(const RigReport& report) {
-  say("{} shapes on {} vertices ({} of the skin), from {} expressions; transferred by {}\n", report.shapes.size(),
-      report.vertices, report.skin_vertices, report.expressions.size(), report.transfer);
+namespace {
+
+/// Of a rig that was fitted to expressions: how far it is from them.
+void printRigFit(const RigReport& report) {
   say("\n{:<34}{:>22}{:>32}\n", "distance to the captured mesh, mm", "rig", "template alone");
   say("{:<34}{:>10}{:>10}{:>10}{:>12}{:>10}{:>10}\n", "expression", "mean", "99th pct", "largest", "mean", "99th pct",
       "largest");
@@ -230,6 +231,14 @@ void printRigReport(const RigReport& report) {
         report.left_out_rmse, report.left_out_nothing);
   }
   say("\n");
+}
+
+}  // namespace
+
+void printRigReport(const RigReport& report) {
+  say("{} shapes on {} vertices ({} of the skin), from {} expressions; transferred by {}\n", report.shapes.size(),
+      report.vertices, report.skin_vertices, report.expressions.size(), report.transfer);
+  if (!report.expressions.empty()) printRigFit(report);
   for (const auto& [map, rmse] : report.compress.rmse) say("{}: RMSE {:.3f} as compressed (0..255)\n", map, rmse);
   say("\n");
   printSeconds(report.seconds);

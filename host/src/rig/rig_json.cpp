@@ -116,7 +116,7 @@ Rig parseRig(const std::string& text, const std::string& file) {
   found.skin_vertices = root["skin_vertices"].integer(1, 1 << 30);
   const ShapeNames shapes(root["shapes"].elements(1, kMostShapes));
   found.shapes = shapes.all();
-  const std::vector<package::JsonField> expressions = root["expressions"].elements(1, package::kMaxExpressions);
+  const std::vector<package::JsonField> expressions = root["expressions"].elements(0, package::kMaxExpressions);
   requireRigSize(found.shapes.size(), expressions.size(), file);
   for (const package::JsonField& expression : expressions) {
     found.package_expressions.push_back(package::fileSafeName(expression["name"]));

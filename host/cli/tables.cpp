@@ -1,6 +1,7 @@
 #include "tables.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
@@ -242,6 +243,32 @@ void printRigReport(const RigReport& report) {
   for (const auto& [map, rmse] : report.compress.rmse) say("{}: RMSE {:.3f} as compressed (0..255)\n", map, rmse);
   say("\n");
   printSeconds(report.seconds);
+}
+
+void printTrainReport(const TrainReport& report) {
+  say("{} subjects, {} expressions, {} shapes on {} vertices\n", report.subjects, report.expressions.size(),
+      report.shapes.size(), report.skin_vertices);
+  say("expressions of subjects left out: {:.3f} mm by the template, {:.3f} mm predicted (rms; {} components, softness "
+      "{:g}, shared {:g}, noise {:g})\n",
+      report.template_mm, report.left_out_mm, report.components, report.softness, report.shared, report.noise);
+  for (const LearnedTexture& texture : report.textures) {
+    say("{}: RMSE {:.3f} (0..255) of the change in the library, {:.3f} without a model\n", texture.map, texture.error,
+        texture.nothing);
+  }
+  say("model: {}\n\n", formatMegabytes(report.model_bytes));
+  printSeconds(report.seconds);
+}
+
+void printGenerateReport(const GenerateReport& report) {
+  say("{} shapes on {} vertices ({} of the skin)\n", report.rig.shapes.size(), report.rig.vertices,
+      report.rig.skin_vertices);
+  say("the neutral lies {:.2f} times as far from the model's mean as is usual\n", report.strangeness);
+  if (!report.maps.empty()) say("textures of every shape: {}\n", fmt::join(report.maps, ", "));
+  for (const auto& [map, rmse] : report.rig.compress.rmse) {
+    say("{}: RMSE {:.3f} as compressed (0..255)\n", map, rmse);
+  }
+  say("\n");
+  printSeconds(report.rig.seconds);
 }
 
 void printRegistrationReport(const RegistrationReport& report) {

@@ -445,6 +445,7 @@ ShapeRegression learnShapes(const ShapeLibrary& library, const RegressionOptions
   ShapeRegression regression;
   regression.identity = leading(identity, choice.components);
   regression.choice = choice;
+  regression.weights = std::move(weights);
   const Eigen::VectorXd per_feature = featureWeights(identity.deviations, choice);
   for (std::size_t m = 0; m < slopes.size(); ++m) {
     regression.offsets.push_back(

@@ -252,8 +252,8 @@ void printTrainReport(const TrainReport& report) {
       "{:g}, shared {:g}, noise {:g})\n",
       report.template_mm, report.left_out_mm, report.components, report.softness, report.shared, report.noise);
   for (const LearnedTexture& texture : report.textures) {
-    say("{}: RMSE {:.3f} (0..255) of the change in the library, {:.3f} without a model\n", texture.map, texture.error,
-        texture.nothing);
+    say("{}: changes of the library's textures err by {:.2f} % of the map's mean, without a model by {:.2f} %\n",
+        texture.map, texture.error, texture.nothing);
   }
   say("model: {}\n\n", formatMegabytes(report.model_bytes));
   printSeconds(report.seconds);

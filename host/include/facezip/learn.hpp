@@ -33,7 +33,8 @@ struct TrainOptions {
   std::vector<std::string> maps;  ///< to learn; empty: those that every subject has
 };
 
-/// How well the textures of a map are predicted, 0 to 255, of the subjects that were learned from.
+/// How well the textures of a map are predicted, of the subjects that were learned from, in per cent of the mean of the
+/// map's neutral. The noise of the scans is in both.
 struct LearnedTexture {
   std::string map;
   double error = 0.0;    ///< root mean square of the difference of an expression's texture to the neutral's

@@ -148,6 +148,9 @@ TextureModel readTexture(const Blocks& blocks, const package::JsonField& field) 
     for (const package::JsonField& map : each["maps"].elements(1, kMostMaps)) {
       regression.maps.push_back(package::fileSafeName(map));
     }
+    if (std::ranges::find(regression.maps, model.map) == regression.maps.end()) {
+      each["maps"].fail("the predicted map among them", each["maps"].got());
+    }
     for (const package::JsonField& count : each["channels"].elements(regression.maps.size(), regression.maps.size())) {
       regression.channels.push_back(count.integer(1, 4));
       channels += regression.channels.back();
@@ -158,9 +161,6 @@ TextureModel readTexture(const Blocks& blocks, const package::JsonField& field) 
     regression.factors = Eigen::Map<const RowsXf>(values.data(), rows, model.channels);
     model.regressions.push_back(std::move(regression));
   }
-  const auto side = size(model.side);
-  model.slopes = image::FloatImage(model.side, model.side, 2 * model.channels);
-  model.slopes.samples = blocks.floats(name + "/slopes", {side, side, size(2 * model.channels)});
   return model;
 }
 
@@ -169,8 +169,6 @@ void addTexture(Blocks& blocks, const TextureModel& model) {
   for (std::size_t i = 0; i < model.regressions.size(); ++i) {
     addMatrix(blocks, fmt::format("{}/factors_{}", name, i), model.regressions[i].factors);
   }
-  blocks.add(name + "/slopes", Shape{size(model.side), size(model.side), size(2 * model.channels)},
-             model.slopes.samples);
 }
 
 rig::RigTemplate readTemplate(const Blocks& blocks, const std::vector<std::string>& names,

@@ -13,6 +13,9 @@
 
 namespace facezip::learn {
 
+/// Components further from the mean than this (in standard deviations) are cut: a straight line says nothing there.
+inline constexpr double kMostScore = 3.0;
+
 /// Meshes are in millimetres, in one frame.
 struct FaceModel {
   std::string name;                    ///< of the library

@@ -24,8 +24,6 @@ namespace {
 using namespace learn;
 namespace fs = std::filesystem;
 
-/// Components further from the mean than this (in standard deviations) are cut: a straight line says nothing there.
-constexpr double kMostScore = 3.0;
 constexpr double kStrange = 2.0;
 
 /// The subject in its own place, size and unit.
@@ -104,16 +102,19 @@ std::vector<CaptureMap> generateTextures(const Capture& capture, const FaceModel
     (regression == nullptr ? report.left_alone : report.maps).push_back(map.name);
     if (regression == nullptr) continue;
     const TexelStrain strain(neutral, region, texture->side);
-    const Eigen::MatrixXf features = textureFeatures(
-        readNeutralTextures(capture, regression->maps, regression->channels, texture->side), strain.texels());
+    const std::vector<image::FloatImage> textures =
+        readNeutralTextures(capture, regression->maps, regression->channels, texture->side);
+    const Eigen::MatrixXf features = textureFeatures(textures, strain.texels());
+    const std::size_t own =
+        static_cast<std::size_t>(std::ranges::find(regression->maps, map.name) - regression->maps.begin());
+    const Eigen::RowVectorXf levels = levelsOf(textures[own], strain.texels());
     io::createDirectories(folder / map.name);
     const std::string extension = image::losslessExtension(map.neutral);
     for (std::size_t m = 0; m < shapes.size(); ++m) {
       map.expressions[m] = folder / map.name / fmt::format("{}{}", m, extension);
     }
     tbb::parallel_for(std::size_t{0}, shapes.size(), [&](std::size_t m) {
-      const Eigen::MatrixXf change =
-          predictTexture(*texture, *regression, strain.of(shapes[m]), features, strain.texels());
+      const Eigen::MatrixXf change = predictTexture(*regression, strain.of(shapes[m]), features) * levels.asDiagonal();
       image::writeChanged(map.neutral, strain.imageOf(change), map.expressions[m]);
     });
     progress.checkCancelled();

@@ -17,7 +17,7 @@ struct LearnedTextures {
   std::vector<LearnedTexture> quality;  ///< likewise
 };
 
-/// Reads every texture twice: for the factors, then for what they leave to the slopes.
+/// Reads every texture once.
 /// layout  topology and UVs of the subjects
 /// meshes  their neutrals and displacements
 /// side    texels of the layout along each axis

@@ -30,9 +30,9 @@ constexpr int kOfChannel = 1 + 2 * kScales;
 constexpr float kLeastDetail = 0.5f;
 /// Of the squared length of each feature.
 constexpr double kRidge = 1e-3;
-/// Slopes are held to 0 as this much squared strain would.
-constexpr float kSlopeRidge = 0.05f;
-constexpr float kMostStrain = 0.3f;  // that slopes go on to
+/// Levels below this (1/255) are no skin's.
+constexpr float kLeastLevel = 16.0f;
+constexpr float kLevel = 128.0f;  // that textures are brought to
 
 struct HatPair {
   int first = 0;       ///< interval [knot first, knot first + 1]
@@ -101,7 +101,7 @@ void addChannel(const Plane& plane, const std::vector<int>& texels, Eigen::Index
     for (Eigen::Index t = 0; t < count; ++t) values[t] = from.data()[texels[static_cast<std::size_t>(t)]];
     return values;
   };
-  features.col(column) = pick(blurs.back()).array() / 128.0f - 1.0f;
+  features.col(column) = pick(blurs.back()).array() / kLevel - 1.0f;
   for (int scale = 0; scale < kScales; ++scale) {
     const auto s = static_cast<std::size_t>(scale);
     const Eigen::VectorXf detail = pick(blurs[s]) - pick(blurs[s + 1]);
@@ -110,10 +110,6 @@ void addChannel(const Plane& plane, const std::vector<int>& texels, Eigen::Index
     features.col(column + 1 + kScales + scale) = detail / (usual + kLeastDetail);
   }
 }
-
-/// Compression and stretch, what slopes are of.
-float compressed(float strain) { return std::min(std::max(-strain, 0.0f), kMostStrain); }
-float stretched(float strain) { return std::min(std::max(strain, 0.0f), kMostStrain); }
 
 }  // namespace
 
@@ -170,6 +166,17 @@ image::FloatImage TexelStrain::imageOf(const Eigen::MatrixXf& values) const {
   return image;
 }
 
+Eigen::RowVectorXf levelsOf(const image::FloatImage& texture, const std::vector<int>& texels) {
+  Eigen::RowVectorXd sums = Eigen::RowVectorXd::Zero(texture.channels);
+  for (const int texel : texels) {
+    for (int c = 0; c < texture.channels; ++c) {
+      sums[c] +=
+          texture.samples[static_cast<std::size_t>(texel) * toSize(texture.channels) + static_cast<std::size_t>(c)];
+    }
+  }
+  return (sums / std::max<double>(1.0, static_cast<double>(texels.size()))).cast<float>().cwiseMax(kLeastLevel);
+}
+
 Eigen::MatrixXf textureFeatures(const std::vector<image::FloatImage>& textures, const std::vector<int>& texels) {
   int channels = 0;
   for (const image::FloatImage& texture : textures) channels += texture.channels;
@@ -177,20 +184,20 @@ Eigen::MatrixXf textureFeatures(const std::vector<image::FloatImage>& textures, 
   features.col(0).setOnes();
   Eigen::Index column = 1;
   for (const image::FloatImage& texture : textures) {
+    const Eigen::RowVectorXf levels = levelsOf(texture, texels);
     for (int c = 0; c < texture.channels; ++c) {
-      addChannel(channelOf(texture, c), texels, column, features);
+      addChannel(kLevel / levels[c] * channelOf(texture, c), texels, column, features);
       column += kOfChannel;
     }
   }
   return features;
 }
 
-Eigen::MatrixXf predictTexture(const TextureModel& model, const TextureRegression& regression,
-                               const Eigen::VectorXf& strain, const Eigen::MatrixXf& features,
-                               const std::vector<int>& texels) {
+Eigen::MatrixXf predictTexture(const TextureRegression& regression, const Eigen::VectorXf& strain,
+                               const Eigen::MatrixXf& features) {
   const Eigen::Index count = features.cols();
   assert(regression.factors.rows() == hatCount() * count);
-  Eigen::MatrixXf changes = Eigen::MatrixXf::Zero(strain.size(), model.channels);
+  Eigen::MatrixXf changes = Eigen::MatrixXf::Zero(strain.size(), regression.factors.cols());
   for (Eigen::Index t = 0; t < strain.size(); ++t) {
     const HatPair hats = hatsAt(strain[t]);
     for (const auto& [knot, weight] :
@@ -198,19 +205,14 @@ Eigen::MatrixXf predictTexture(const TextureModel& model, const TextureRegressio
       if (hatOf(knot) < 0 || weight == 0.0f) continue;
       changes.row(t) += weight * (features.row(t) * regression.factors.middleRows(hatOf(knot) * count, count));
     }
-    const auto slopes = static_cast<std::size_t>(texels[static_cast<std::size_t>(t)]) * toSize(2, model.channels);
-    for (int c = 0; c < model.channels; ++c) {
-      const auto at = slopes + static_cast<std::size_t>(c);
-      changes(t, c) += compressed(strain[t]) * model.slopes.samples[at] +
-                       stretched(strain[t]) * model.slopes.samples[at + static_cast<std::size_t>(model.channels)];
-    }
   }
   return changes;
 }
 
 TextureSums::TextureSums(Eigen::Index features, Eigen::Index channels)
     : gram_(Eigen::MatrixXd::Zero(hatCount() * features, hatCount() * features)),
-      right_(Eigen::MatrixXd::Zero(hatCount() * features, channels)) {}
+      right_(Eigen::MatrixXd::Zero(hatCount() * features, channels)),
+      squares_(Eigen::VectorXd::Zero(channels)) {}
 
 void TextureSums::add(const Eigen::VectorXf& strain, const Eigen::MatrixXf& features, const Eigen::MatrixXf& changes) {
   // Texels between the same two knots share their hats: one product of matrices for all of them.
@@ -221,6 +223,8 @@ void TextureSums::add(const Eigen::VectorXf& strain, const Eigen::MatrixXf& feat
     shares[static_cast<std::size_t>(t)] = hats.share;
     between[static_cast<std::size_t>(hats.first)].push_back(t);
   }
+  squares_ += changes.cast<double>().colwise().squaredNorm().transpose();
+  texels_ += static_cast<double>(changes.rows());
   const Eigen::Index count = features.cols();
   for (std::size_t interval = 0; interval < between.size(); ++interval) {
     const std::vector<Eigen::Index>& texels = between[interval];
@@ -248,6 +252,8 @@ void TextureSums::add(const Eigen::VectorXf& strain, const Eigen::MatrixXf& feat
 void TextureSums::add(const TextureSums& other) {
   gram_ += other.gram_;
   right_ += other.right_;
+  squares_ += other.squares_;
+  texels_ += other.texels_;
 }
 
 Eigen::MatrixXf TextureSums::solve(const std::vector<Eigen::Index>& used, Eigen::Index begin,
@@ -263,42 +269,14 @@ Eigen::MatrixXf TextureSums::solve(const std::vector<Eigen::Index>& used, Eigen:
   return system.ldlt().solve(right_(rows, Eigen::seqN(begin, count))).cast<float>();
 }
 
-SlopeSums::SlopeSums(Eigen::Index texels, Eigen::Index channels)
-    : products_(Eigen::MatrixXf::Zero(texels, 3)), right_(Eigen::MatrixXf::Zero(texels, 2 * channels)) {}
-
-void SlopeSums::add(const Eigen::VectorXf& strain, const Eigen::MatrixXf& left) {
-  const Eigen::VectorXf in = strain.unaryExpr(&compressed), out = strain.unaryExpr(&stretched);
-  products_.col(0) += in.cwiseAbs2();
-  products_.col(1) += in.cwiseProduct(out);
-  products_.col(2) += out.cwiseAbs2();
-  right_.leftCols(left.cols()) += in.asDiagonal() * left;
-  right_.rightCols(left.cols()) += out.asDiagonal() * left;
-}
-
-Eigen::MatrixXf SlopeSums::solve() const {
-  const Eigen::Index channels = right_.cols() / 2;
-  Eigen::MatrixXf slopes(right_.rows(), right_.cols());
-  for (Eigen::Index t = 0; t < right_.rows(); ++t) {
-    const float a = products_(t, 0) + kSlopeRidge, b = products_(t, 1), d = products_(t, 2) + kSlopeRidge;
-    const float determinant = a * d - b * b;
-    for (Eigen::Index c = 0; c < channels; ++c) {
-      const float x = right_(t, c), y = right_(t, channels + c);
-      slopes(t, c) = (d * x - b * y) / determinant;
-      slopes(t, channels + c) = (a * y - b * x) / determinant;
-    }
-  }
-  return slopes;
-}
-
-double SlopeSums::explained(const Eigen::MatrixXf& slopes) const {
-  const Eigen::Index channels = right_.cols() / 2;
-  const auto in = slopes.leftCols(channels).array(), out = slopes.rightCols(channels).array();
-  const Eigen::ArrayXXf linear =
-      2.0f * (in * right_.leftCols(channels).array() + out * right_.rightCols(channels).array());
-  const Eigen::ArrayXXf squared = (in.square().colwise() * products_.col(0).array()) +
-                                  (2.0f * in * out).colwise() * products_.col(1).array() +
-                                  (out.square().colwise() * products_.col(2).array());
-  return (linear - squared).cast<double>().sum();
+std::pair<double, double> TextureSums::errorOf(const Eigen::MatrixXf& factors, Eigen::Index begin,
+                                               Eigen::Index count) const {
+  const Eigen::MatrixXd b = factors.cast<double>();
+  const double nothing = squares_.segment(begin, count).sum();
+  const double left =
+      nothing - 2.0 * b.cwiseProduct(right_.middleCols(begin, count)).sum() + b.cwiseProduct(gram_ * b).sum();
+  const double values = std::max(texels_ * static_cast<double>(count), 1.0);
+  return {std::sqrt(std::max(left, 0.0) / values), std::sqrt(nothing / values)};
 }
 
 }  // namespace facezip::learn

@@ -1,15 +1,17 @@
 // texture_regression.hpp - what an expression does to a texture, told from the strain of the skin and from the
 // neutral's own texture: where faint lines are, wrinkles deepen.
 //
-// The change of a texel is  y = sum_kj B_kj h_k(u) f_j + g(u) S,   with
+// The change of a texel, over the usual level of its channel, is  y = sum_kj B_kj h_k(u) f_j,   with
 //   u    strain of the skin there: log of the mean length of the edges around a vertex over that of the neutral
 //   h_k  hat functions of u, 0 where nothing is strained
 //   f_j  1; local colour and details at three scales of the neutral's textures; the details over their usual size
-//   S    slopes of the texel's own, the same for everyone: how it changes where skin is compressed and stretched
+// Textures count over the mean of their channel: how bright a scan is as a whole says nothing of the skin, and a
+// regression would learn to undo it.
 #pragma once
 
 #include <Eigen/Core>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "facezip/geometry/mesh.hpp"
@@ -29,9 +31,8 @@ struct TextureRegression {
 struct TextureModel {
   std::string map;
   int channels = 0;
-  int side = 0;                                ///< texels of the slopes along each axis
+  int side = 0;                                ///< texels of the layout along each axis
   std::vector<TextureRegression> regressions;  ///< the one that needs most of the neutral first
-  image::FloatImage slopes;                    ///< side by side, 2 channels: compressed, then stretched
 };
 
 /// Which vertices each texel of a square layout lies among.
@@ -59,6 +60,9 @@ class TexelStrain {
   std::vector<int> source_;                   ///< of every texel of the image: index into texels_, -1 for none
 };
 
+/// The mean of each channel over the texels, at least 16; 1/255.
+Eigen::RowVectorXf levelsOf(const image::FloatImage& texture, const std::vector<int>& texels);
+
 /// f of every texel: texels by J.
 /// textures  of the neutral, side by side
 Eigen::MatrixXf textureFeatures(const std::vector<image::FloatImage>& textures, const std::vector<int>& texels);
@@ -67,11 +71,10 @@ Eigen::Index featureCount(int channels);
 /// K, hat functions.
 Eigen::Index hatCount();
 
-/// y of every texel: texels by channels.
+/// y of every texel: texels by channels of the predicted map.
 /// strain  u;  features  f of the regression's maps
-Eigen::MatrixXf predictTexture(const TextureModel& model, const TextureRegression& regression,
-                               const Eigen::VectorXf& strain, const Eigen::MatrixXf& features,
-                               const std::vector<int>& texels);
+Eigen::MatrixXf predictTexture(const TextureRegression& regression, const Eigen::VectorXf& strain,
+                               const Eigen::MatrixXf& features);
 
 /// Sums of least squares, over subjects and expressions in any number.
 class TextureSums {
@@ -82,26 +85,15 @@ class TextureSums {
   void add(const TextureSums& other);
   /// Factors for columns [begin, begin + count) of the changes from features `used`.
   Eigen::MatrixXf solve(const std::vector<Eigen::Index>& used, Eigen::Index begin, Eigen::Index count) const;
+  /// Root mean square over the texels of what factors from all features leave of columns [begin, begin + count), and of
+  /// these columns.
+  std::pair<double, double> errorOf(const Eigen::MatrixXf& factors, Eigen::Index begin, Eigen::Index count) const;
 
  private:
-  Eigen::MatrixXd gram_;   ///< K J by K J
-  Eigen::MatrixXd right_;  ///< K J by channels
-};
-
-/// Sums for the slopes: each texel's two by two system.
-class SlopeSums {
- public:
-  SlopeSums(Eigen::Index texels, Eigen::Index channels);
-  /// left  texels by channels: what the factors leave of the change
-  void add(const Eigen::VectorXf& strain, const Eigen::MatrixXf& left);
-  /// Texels by 2 channels: compressed, then stretched.
-  Eigen::MatrixXf solve() const;
-  /// How much of the sum of squares that was added slopes take away.
-  double explained(const Eigen::MatrixXf& slopes) const;
-
- private:
-  Eigen::MatrixXf products_;  ///< texels by 3
-  Eigen::MatrixXf right_;     ///< texels by 2 channels
+  Eigen::MatrixXd gram_;     ///< K J by K J
+  Eigen::MatrixXd right_;    ///< K J by channels
+  Eigen::VectorXd squares_;  ///< channels: sums of squares of the changes
+  double texels_ = 0.0;
 };
 
 }  // namespace facezip::learn

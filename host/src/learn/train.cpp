@@ -85,6 +85,25 @@ geometry::ShapeLibrary shapeLibraryOf(LibraryMeshes& meshes, const rig::RigTempl
   return shapes;
 }
 
+/// The subjects as the model poses them, in place of the captured expressions: textures are learned from the strain
+/// that generated shapes will have, not from that of shapes which no neutral tells.
+void poseByModel(const geometry::ShapeRegression& regression, geometry::ShapeLibrary& shapes) {
+  const Eigen::Index expressions = shapes.asked.rows();
+  for (std::size_t s = 0; s < shapes.neutrals.size(); ++s) {
+    std::vector<Eigen::MatrixX3d> own = regression.predict(shapes.neutrals[s], kMostScore);
+    for (std::size_t m = 0; m < own.size(); ++m) own[m] += shapes.template_shapes[m];
+    tbb::parallel_for(Eigen::Index{0}, expressions, [&](Eigen::Index e) {
+      Eigen::MatrixX3d posed = Eigen::MatrixX3d::Zero(shapes.neutrals[s].rows(), 3);
+      for (std::size_t m = 0; m < own.size(); ++m) {
+        const double weight =
+            regression.weights(static_cast<Eigen::Index>(s) * expressions + e, static_cast<Eigen::Index>(m));
+        if (weight > 0.0) posed += weight * own[m];
+      }
+      shapes.examples[s][static_cast<std::size_t>(e)] = posed.cast<float>();
+    });
+  }
+}
+
 void reportShapes(const geometry::RegressionChoice& choice, TrainReport& report) {
   report.components = choice.components;
   report.softness = choice.softness;
@@ -120,7 +139,7 @@ TrainReport trainModel(const fs::path& library_directory, const fs::path& templa
     mean += neutral / static_cast<double>(meshes.neutrals.size());
   }
   model.face_template = placedTemplate(rig_template, mean);
-  const geometry::ShapeLibrary shapes = shapeLibraryOf(meshes, model.face_template, library.asked);
+  geometry::ShapeLibrary shapes = shapeLibraryOf(meshes, model.face_template, library.asked);
   model.shapes = geometry::learnShapes(shapes, {options.rounds}, [&progress](const char* what) {
     progress.checkCancelled();
     progress.busy(what);
@@ -129,6 +148,7 @@ TrainReport trainModel(const fs::path& library_directory, const fs::path& templa
   model.skin.positions = model.shapes.identity.mean;
   clock.book("regressing shapes");
 
+  poseByModel(model.shapes, shapes);
   TrainReport report;
   LearnedTextures textures = learnTextures(library, model.skin, shapes, options.resolution, progress);
   model.textures = std::move(textures.models);

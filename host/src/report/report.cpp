@@ -234,7 +234,8 @@ std::string toJson(const TrainReport& report) {
                  {"model_bytes", report.model_bytes},
                  {"seconds", secondsJson(report.seconds)}};
   for (const LearnedTexture& texture : report.textures) {
-    object["textures"].push_back({{"map", texture.map}, {"rmse", texture.error}, {"no_change_rmse", texture.nothing}});
+    object["textures"].push_back(
+        {{"map", texture.map}, {"error_percent", texture.error}, {"no_change_percent", texture.nothing}});
   }
   return object.dump(2) + "\n";
 }

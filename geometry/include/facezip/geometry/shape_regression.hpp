@@ -46,6 +46,7 @@ struct ShapeRegression {
   IdentityBasis identity;             ///< D components
   std::vector<ShapeOffsets> offsets;  ///< M
   RegressionChoice choice;
+  Eigen::MatrixXd weights;  ///< S N by M: how strongly each subject performed each expression, subject by subject
 
   /// Displacements of the offsets O_m for a neutral that lies as the mean does: M, #V by 3.
   /// most  scores are cut to [-most, most]

@@ -302,9 +302,9 @@ RegressionChoice choose(const Data& data, const Eigen::MatrixXd& weights, const 
     choice.*setting = value;
     return choice;
   };
-  for (const double softness : {0.03, 0.3, 0.1, 0.01, 0.003}) attempt(with(&RegressionChoice::softness, softness));
+  for (const double softness : {0.01, 0.1, 0.03, 0.003}) attempt(with(&RegressionChoice::softness, softness));
   for (const double shared : {0.4, 0.8}) attempt(with(&RegressionChoice::shared, shared));
-  for (const double noise : {0.12, 0.2, 0.5}) attempt(with(&RegressionChoice::noise, noise));
+  for (const double noise : {0.2, 0.12, 0.3}) attempt(with(&RegressionChoice::noise, noise));
   return best;
 }
 
@@ -435,7 +435,8 @@ ShapeRegression learnShapes(const ShapeLibrary& library, const RegressionOptions
   std::vector<Eigen::MatrixXf> slopes;
   for (int round = 0; round < options.rounds; ++round) {
     if (round > 0) weights = weightsOf(library, data, &slopes, features, step);
-    choice = choose(data, weights, folds, step);
+    // Settings matter little while weights are rough, and trying them is what takes the time.
+    if (round + 1 == options.rounds) choice = choose(data, weights, folds, step);
     choice.components = static_cast<int>(std::min(kMostComponents, identity.size()));
     features = featuresOf(scores, identity.deviations, choice);
     if (step) step("regressing the shapes");

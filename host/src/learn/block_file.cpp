@@ -11,7 +11,7 @@
 #include <limits>
 
 #include "io/write_file.hpp"
-#include "package/package_json.hpp"
+#include "io/quoted.hpp"
 
 namespace facezip::learn {
 namespace fs = std::filesystem;
@@ -72,7 +72,7 @@ std::uint64_t countOf(const Entry& entry, const Cursor& cursor) {
   std::uint64_t count = 1;
   for (const std::uint64_t extent : entry.block.shape) {
     if (extent > kMostBytes || (extent > 0 && count > kMostBytes / extent)) {
-      cursor.fail(package::quoted(entry.name), "a block that the file can hold",
+      cursor.fail(io::quoted(entry.name), "a block that the file can hold",
                   fmt::format("{}", fmt::join(entry.block.shape, " x ")));
     }
     count *= extent;
@@ -88,11 +88,11 @@ Entry readEntry(Cursor& cursor) {
   }
   entry.name = cursor.text(length, "name of a block");
   const auto type = cursor.number<std::uint32_t>("type of a block");
-  if (type < 1 || type > 3) cursor.fail(package::quoted(entry.name), "a type from 1 to 3", fmt::format("{}", type));
+  if (type < 1 || type > 3) cursor.fail(io::quoted(entry.name), "a type from 1 to 3", fmt::format("{}", type));
   entry.block.type = static_cast<BlockType>(type);
   const auto axes = cursor.number<std::uint32_t>("axes of a block");
   if (axes < 1 || axes > kMostAxes) {
-    cursor.fail(package::quoted(entry.name), fmt::format("1 to {} axes", kMostAxes), fmt::format("{}", axes));
+    cursor.fail(io::quoted(entry.name), fmt::format("1 to {} axes", kMostAxes), fmt::format("{}", axes));
   }
   for (std::uint32_t axis = 0; axis < axes; ++axis) {
     entry.block.shape.push_back(cursor.number<std::uint64_t>("shape of a block"));
@@ -114,7 +114,7 @@ void readNumbers(Cursor& cursor, Entry& entry) {
     block.floats.resize(entry.count);
     std::memcpy(block.floats.data(), from, bytes);
     const bool finite = std::ranges::all_of(block.floats, [](float value) { return std::isfinite(value); });
-    if (!finite) cursor.fail(package::quoted(entry.name), "finite numbers", "NaN or infinity");
+    if (!finite) cursor.fail(io::quoted(entry.name), "finite numbers", "NaN or infinity");
   }
 }
 
@@ -193,7 +193,7 @@ const std::vector<std::int32_t>& Blocks::integers(const std::string& name,
 const std::string& Blocks::text(const std::string& name) const { return block(name, BlockType::kText).text; }
 
 void Blocks::fail(const std::string& name, const std::string& expected, const std::string& got) const {
-  throw InputError({file_.string(), package::quoted(name), expected, got, kCure});
+  throw InputError({file_.string(), io::quoted(name), expected, got, kCure});
 }
 
 Blocks readBlocks(const fs::path& file) {
@@ -223,7 +223,7 @@ Blocks readBlocks(const fs::path& file) {
   for (Entry& entry : entries) {
     readNumbers(cursor, entry);
     if (!blocks.blocks_.emplace(entry.name, std::move(entry.block)).second) {
-      cursor.fail(package::quoted(entry.name), "one block of a name", "two");
+      cursor.fail(io::quoted(entry.name), "one block of a name", "two");
     }
   }
   return blocks;

@@ -7,8 +7,8 @@
 
 #include "facezip/version.hpp"
 #include "learn/block_file.hpp"
-#include "package/json_field.hpp"
-#include "package/safe_names.hpp"
+#include "io/json_field.hpp"
+#include "io/safe_names.hpp"
 
 namespace facezip::learn {
 namespace fs = std::filesystem;
@@ -123,11 +123,11 @@ geometry::ShapeOffsets readOffsets(const Blocks& blocks, const std::string& name
   return offsets;
 }
 
-std::vector<std::string> readShapeNames(const package::JsonField& field) {
+std::vector<std::string> readShapeNames(const io::JsonField& field) {
   std::vector<std::string> names;
-  for (const package::JsonField& name : field.elements(1, kMostShapes)) {
-    names.push_back(package::fileSafeName(name));
-    const auto fault = package::nameFault(names.back(), ",=:");
+  for (const io::JsonField& name : field.elements(1, kMostShapes)) {
+    names.push_back(io::fileSafeName(name));
+    const auto fault = io::nameFault(names.back(), ",=:");
     if (fault) name.fail(fault->expected, fault->got);
   }
   std::vector<std::string> sorted = names;
@@ -136,22 +136,22 @@ std::vector<std::string> readShapeNames(const package::JsonField& field) {
   return names;
 }
 
-TextureModel readTexture(const Blocks& blocks, const package::JsonField& field) {
+TextureModel readTexture(const Blocks& blocks, const io::JsonField& field) {
   TextureModel model;
-  model.map = package::fileSafeName(field["name"]);
+  model.map = io::fileSafeName(field["name"]);
   model.channels = field["channels"].integer(1, 4);
   model.side = field["side"].integer(1, kMostSide);
   const std::string name = "textures/" + model.map;
-  for (const package::JsonField& each : field["regressions"].elements(1, kMostMaps)) {
+  for (const io::JsonField& each : field["regressions"].elements(1, kMostMaps)) {
     TextureRegression regression;
     int channels = 0;
-    for (const package::JsonField& map : each["maps"].elements(1, kMostMaps)) {
-      regression.maps.push_back(package::fileSafeName(map));
+    for (const io::JsonField& map : each["maps"].elements(1, kMostMaps)) {
+      regression.maps.push_back(io::fileSafeName(map));
     }
     if (std::ranges::find(regression.maps, model.map) == regression.maps.end()) {
       each["maps"].fail("the predicted map among them", each["maps"].got());
     }
-    for (const package::JsonField& count : each["channels"].elements(regression.maps.size(), regression.maps.size())) {
+    for (const io::JsonField& count : each["channels"].elements(regression.maps.size(), regression.maps.size())) {
       regression.channels.push_back(count.integer(1, 4));
       channels += regression.channels.back();
     }
@@ -221,8 +221,8 @@ std::uint64_t writeModel(const fs::path& file, const FaceModel& model, Progress&
 
 FaceModel readModel(const fs::path& file) {
   const Blocks blocks = readBlocks(file);
-  const nlohmann::json about = package::parseJson(blocks.text(kAbout), file.string());
-  const package::JsonField root(about, file.string(), "", "take a file that `facezip train` wrote, or train again");
+  const nlohmann::json about = io::parseJson(blocks.text(kAbout), file.string());
+  const io::JsonField root(about, file.string(), "", "take a file that `facezip train` wrote, or train again");
   if (root["format"].text() != "facezip-model") root["format"].fail("\"facezip-model\"", root["format"].got());
   root["version"].integer(1, 1);
   if (root["method"].text() != "linear") root["method"].fail("\"linear\"", root["method"].got());
@@ -242,7 +242,7 @@ FaceModel readModel(const fs::path& file) {
   for (const std::string& name : names) {
     model.shapes.offsets.push_back(readOffsets(blocks, "offsets/" + name, 1 + components, vertices));
   }
-  for (const package::JsonField& map : root["maps"].elements(0, kMostMaps)) {
+  for (const io::JsonField& map : root["maps"].elements(0, kMostMaps)) {
     model.textures.push_back(readTexture(blocks, map));
   }
   return model;

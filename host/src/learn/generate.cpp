@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compress/face.hpp"
-#include "compress/stage_clock.hpp"
+#include "face/face.hpp"
+#include "io/stage_clock.hpp"
 #include "facezip/geometry/obj_io.hpp"
 #include "facezip/geometry/topology.hpp"
 #include "facezip/learn.hpp"
@@ -132,7 +132,7 @@ ProtectedPaths generateInputs(const Capture& neutral, const fs::path& model, con
 GenerateReport generateFace(const Capture& capture, const fs::path& file, const fs::path& package,
                             const CompressOptions& options, const Device& device, Progress& progress) {
   generateInputs(capture, file, options).requireApartFromFolder(package);
-  compress::StageClock clock;
+  io::StageClock clock;
   io::StagedDirectory staged(package, package::footprint(), &progress);
   progress.stage("reading the model", 0);
   FaceModel model = readModel(file);

@@ -5,11 +5,11 @@
 
 #include <algorithm>
 
-#include "compress/face.hpp"
+#include "face/face.hpp"
 #include "facezip/geometry/length.hpp"
 #include "facezip/geometry/obj_io.hpp"
 #include "facezip/geometry/topology.hpp"
-#include "package/package_json.hpp"
+#include "io/quoted.hpp"
 #include "rig/weight_guess.hpp"
 
 namespace facezip::learn {
@@ -43,7 +43,7 @@ void requireExpressions(const Capture& capture, const Capture& first) {
   const auto lacks = [](const Capture& in, const Capture& of) {
     std::vector<std::string> names;
     for (const std::string& name : of.expressions) {
-      if (std::ranges::find(in.expressions, name) == in.expressions.end()) names.push_back(package::quoted(name));
+      if (std::ranges::find(in.expressions, name) == in.expressions.end()) names.push_back(io::quoted(name));
     }
     return names;
   };

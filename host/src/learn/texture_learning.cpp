@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "compress/face.hpp"
+#include "face/face.hpp"
 
 namespace facezip::learn {
 namespace {

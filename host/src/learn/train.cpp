@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compress/face.hpp"
-#include "compress/stage_clock.hpp"
+#include "face/face.hpp"
+#include "io/stage_clock.hpp"
 #include "facezip/geometry/obj_io.hpp"
 #include "facezip/learn.hpp"
 #include "learn/face_model.hpp"
@@ -125,7 +125,7 @@ TrainReport trainModel(const fs::path& library_directory, const fs::path& templa
                        const fs::path& file, const TrainOptions& options, Progress& progress) {
   requireSaneOptions(options);
   trainInputs(library_directory, template_directory, facs).requireApart(file);
-  compress::StageClock clock;
+  io::StageClock clock;
   progress.stage("opening the library", 0);
   const rig::RigTemplate rig_template = rig::readTemplate(template_directory, progress);
   const Library library = openLibrary(library_directory, facs, rig_template.names, options.maps, progress);

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "compress/stage_clock.hpp"
 #include "facezip/error.hpp"
 #include "facezip/geometry/face_region.hpp"
 #include "facezip/geometry/length.hpp"
@@ -14,6 +13,7 @@
 #include "facezip/registration.hpp"
 #include "image/set_sample.hpp"
 #include "io/counts.hpp"
+#include "io/stage_clock.hpp"
 #include "io/staged_directory.hpp"
 #include "register/hole_filling.hpp"
 #include "register/mesh_registration.hpp"
@@ -244,7 +244,7 @@ ProtectedPaths inputsOf(const fs::path& scans, const fs::path& template_director
 RegistrationReport registerScans(const fs::path& scans, const fs::path& template_directory, const fs::path& capture,
                                  const RegistrationOptions& options, const Device& device, Progress& progress) {
   requireSaneOptions(options);
-  compress::StageClock clock;
+  io::StageClock clock;
   inputsOf(scans, template_directory, options).requireApartFromFolder(capture);
   io::StagedDirectory staged(capture, {kManifest, "\"generator\": \"facezip register\"", everyFile}, &progress);
   progress.stage("reading the template", 0);

@@ -29,9 +29,9 @@ struct ShapeLibrary {
 /// What a regression was made with. Each was found by leaving subjects out.
 struct RegressionChoice {
   int components = 0;      ///< of the neutrals' principal components
-  double softness = 0.03;  ///< k counts a component of variance v by v / (v + softness v_1)
+  double softness = 0.01;  ///< k counts a component of variance v by v / (v + softness v_1)
   double shared = 0.6;     ///< rho
-  double noise = 0.3;      ///< of an expression, as a share of its displacement
+  double noise = 0.2;      ///< of an expression, as a share of its displacement
   double left_out = 0.0;   ///< error of subjects' expressions predicted from the others ...
   double nothing = 0.0;    ///< ... and of the template alone, in the meshes' unit, root mean square
 };

@@ -8,10 +8,10 @@
 #include <cmath>
 
 #include "face/face.hpp"
-#include "io/stage_clock.hpp"
 #include "facezip/geometry/obj_io.hpp"
 #include "facezip/geometry/topology.hpp"
 #include "facezip/learn.hpp"
+#include "io/stage_clock.hpp"
 #include "io/staged_directory.hpp"
 #include "learn/face_model.hpp"
 #include "learn/library.hpp"
@@ -34,12 +34,26 @@ struct Subject {
   geometry::Similarity to_model;  ///< millimetres of the subject to the model's frame, rigid
 };
 
+void requireTopology(const geometry::TriangleMesh& neutral, const fs::path& mesh_file, const FaceModel& model,
+                     const fs::path& file) {
+  try {
+    geometry::requireSameTopology(model.skin, fmt::format("the faces of {}", file.string()), neutral,
+                                  mesh_file.string());
+  } catch (const InputError& error) {
+    InputError::Parts parts = error.parts();
+    parts.cure = fmt::format(
+        "bring the scan into the topology and layout of the library that the model learned from "
+        "(\"{}\"), with `facezip register`, or train a model of this topology",
+        model.name);
+    throw InputError(parts);
+  }
+}
+
 Subject readSubject(const Capture& capture, const FaceModel& model, const fs::path& file, const std::string& unit,
                     Progress& progress) {
   Subject subject;
   subject.neutral = geometry::readObj(capture.neutral_mesh);
-  geometry::requireSameTopology(model.skin, fmt::format("{} (the model's faces)", file.string()), subject.neutral,
-                                capture.neutral_mesh.string());
+  requireTopology(subject.neutral, capture.neutral_mesh, model, file);
   geometry::requireUvs(subject.neutral, capture.neutral_mesh.string());
   subject.unit = unitOf(capture, subject.neutral, unit, progress);
   subject.millimetres_per_unit = 1000.0 * geometry::metresPerUnit(subject.unit);

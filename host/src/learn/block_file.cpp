@@ -10,8 +10,8 @@
 #include <fstream>
 #include <limits>
 
-#include "io/write_file.hpp"
 #include "io/quoted.hpp"
+#include "io/write_file.hpp"
 
 namespace facezip::learn {
 namespace fs = std::filesystem;
@@ -22,7 +22,7 @@ static_assert(std::endian::native == std::endian::little, "numbers stand in the 
 constexpr char kMagic[9] = "facezipM";
 constexpr std::uint32_t kVersion = 1;
 constexpr std::uint32_t kMostBlocks = 65536;
-constexpr std::uint32_t kMostName = 200;
+constexpr std::uint32_t kMostName = 400;  // names of shapes and maps have 200 bytes
 constexpr std::uint32_t kMostAxes = 4;
 /// Bytes: as much as any model of a head takes by far.
 constexpr std::uint64_t kMostBytes = std::uint64_t{4} << 30;

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "facezip/version.hpp"
-#include "learn/block_file.hpp"
 #include "io/json_field.hpp"
 #include "io/safe_names.hpp"
+#include "learn/block_file.hpp"
 
 namespace facezip::learn {
 namespace fs = std::filesystem;

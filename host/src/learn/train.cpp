@@ -6,9 +6,10 @@
 #include <cmath>
 
 #include "face/face.hpp"
-#include "io/stage_clock.hpp"
 #include "facezip/geometry/obj_io.hpp"
 #include "facezip/learn.hpp"
+#include "facezip/printable.hpp"
+#include "io/stage_clock.hpp"
 #include "learn/face_model.hpp"
 #include "learn/library.hpp"
 #include "learn/texture_learning.hpp"
@@ -32,6 +33,11 @@ void requireSaneOptions(const TrainOptions& options) {
   if (options.rounds < 1 || options.rounds > 100) {
     throw InputError({"--rounds", "", "1 to 100", fmt::format("{}", options.rounds), ""});
   }
+}
+
+std::string nameOfLibrary(const fs::path& directory) {
+  const fs::path path = fs::absolute(directory).lexically_normal();  // "people/" ends in an empty name
+  return (path.has_filename() ? path : path.parent_path()).filename().string();
 }
 
 /// The library's meshes, all in the frame of the first subject.
@@ -133,7 +139,7 @@ TrainReport trainModel(const fs::path& library_directory, const fs::path& templa
   clock.book("reading meshes");
 
   FaceModel model;
-  model.name = fs::absolute(library_directory).lexically_normal().filename().string();
+  model.name = printable(nameOfLibrary(library_directory));
   Eigen::MatrixX3d mean = Eigen::MatrixX3d::Zero(meshes.first.positions.rows(), 3);
   for (const Eigen::MatrixX3d& neutral : meshes.neutrals) {
     mean += neutral / static_cast<double>(meshes.neutrals.size());

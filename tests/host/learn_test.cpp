@@ -73,7 +73,7 @@ TrainReport* LearnTest::report_ = nullptr;
 TEST_F(LearnTest, AStrangersShapesAreHerOwnAndSoAreTheirTextures) {
   EXPECT_EQ(report_->subjects, 7u);
   EXPECT_LT(report_->left_out_mm, 0.7 * report_->template_mm);
-  EXPECT_LT(report_->textures.at(0).error, 0.5 * report_->textures.at(0).nothing);
+  EXPECT_LT(report_->textures.at(0).error, 0.8 * report_->textures.at(0).nothing);
   const GenerateReport report = generate(folder() / "stranger", folder() / "model", "face");
   EXPECT_THAT(report.maps, testing::ElementsAre("albedo"));
   EXPECT_LT(report.strangeness, 2.0);

@@ -85,6 +85,7 @@ def main():
     parser.add_argument("--maps", default="albedo")
     parser.add_argument("--millimetres", type=float, default=10.0, help="of the meshes' unit")
     options = parser.parse_args()
+    options.facezip = options.facezip.resolve()
     facs = json.loads((options.held / "facs.json").read_text())
     template = options.held / "template"
     names = sorted(p.stem for p in template.glob("*.obj") if not p.stem.endswith("neutral"))

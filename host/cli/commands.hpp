@@ -20,6 +20,8 @@ void addReportCommand(CLI::App& app, const CommonOptions& common);
 void addViewCommand(CLI::App& app, const CommonOptions& common);
 void addRegisterCommand(CLI::App& app, const CommonOptions& common);
 void addRigCommand(CLI::App& app, const CommonOptions& common);
+void addTrainCommand(CLI::App& app, const CommonOptions& common);
+void addGenerateCommand(CLI::App& app, const CommonOptions& common);
 void addSolveWeightsCommand(CLI::App& app, const CommonOptions& common);
 void addInfoCommand(CLI::App& app, const CommonOptions& common);
 void addDevicesCommand(CLI::App& app, const CommonOptions& common);

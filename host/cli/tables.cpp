@@ -238,12 +238,14 @@ void printRigReport(const RigReport& report) {
 void printRegistrationReport(const RegistrationReport& report) {
   say("{} vertices, {} triangles of the region, in {}{}\n", report.vertices, report.region_triangles, report.unit,
       report.unit_guessed ? " (guessed)" : "");
-  say("\n{:<34}{:>20}{:>20}{:>10}{:>20}\n", "scan to mesh, mm", "posed", "registered", "shown", "head moved");
-  say("{:<34}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "", "mean", "99th pct", "mean", "99th pct", "%", "degrees",
-      "mm");
+  say("\n{:<34}{:>20}{:>20}{:>10}{:>20}{:>20}\n", "scan to mesh, mm", "posed", "registered", "shown", "head moved",
+      "flow, texels");
+  say("{:<34}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "", "mean", "99th pct", "mean", "99th pct", "%",
+      "degrees", "mm", "before", "after");
   for (const RegisteredScan& scan : report.scans) {
-    say("{:<34}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.1f}{:>10.2f}{:>10.2f}\n", scan.name, scan.model_mean,
-        scan.model_p99, scan.mean, scan.p99, 100.0 * scan.coverage, scan.degrees, scan.millimetres);
+    say("{:<34}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.1f}{:>10.2f}{:>10.2f}{:>10.2f}{:>10.2f}\n", scan.name,
+        scan.model_mean, scan.model_p99, scan.mean, scan.p99, 100.0 * scan.coverage, scan.degrees, scan.millimetres,
+        scan.flow_before_mean, scan.flow_mean);
   }
   say("\n");
   printSeconds(report.seconds);

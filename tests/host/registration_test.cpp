@@ -120,6 +120,31 @@ TEST(Registration, TheResultIsACapture) {
   EXPECT_NO_THROW(geometry::requireSameTopology(made.set.mesh(), "", neutral, ""));
 }
 
+TEST(Registration, FlowDrawsTexturesOntoTheNeutrals) {
+  const Registered& made = Registered::once();
+  const RegisteredScan& open = made.report.scans[1];
+  EXPECT_GE(made.report.flow_side, 256);
+  EXPECT_GE(open.flow_rounds, 1);
+  EXPECT_GT(open.flow_trusted, 0.8);
+  EXPECT_LT(open.flow_p95, open.flow_before_p95);
+  EXPECT_EQ(made.report.scans[0].flow_rounds, 0);
+  // How the expression moves against the neutral, with flow and without.
+  RegistrationOptions options;
+  options.resolution = kSide;
+  options.unit = "cm";
+  options.last_step = RegistrationStep::kBending;
+  Notes notes;
+  registerScans(made.folder / "scans", made.folder / "template", made.folder / "bent", options, test::testDevice(),
+                notes);
+  const Eigen::MatrixX3d truth = 1000.0 * (made.set.truth(0.8) - made.set.truth(0.0));
+  const auto error = [&](const char* capture) {
+    const Eigen::MatrixX3d moved = 10.0 * (geometry::readObj(made.folder / capture / "expressions/open.obj").positions -
+                                           geometry::readObj(made.folder / capture / "neutral.obj").positions);
+    return (moved - truth).rowwise().norm().mean();
+  };
+  EXPECT_LT(error("capture"), 0.9 * error("bent"));
+}
+
 TEST(Registration, TheHeadsMotionIsTakenOutAndTold) {
   const RegisteredScan& open = Registered::once().report.scans[1];
   EXPECT_NEAR(open.degrees, (0.03 + 0.05) * 180.0 / 3.14159265, 0.7);
@@ -132,6 +157,8 @@ TEST(Registration, ReportsAsJson) {
   EXPECT_EQ(report["scans"].size(), 2u);
   EXPECT_EQ(report["scans"][1]["name"], "open");
   EXPECT_GT(report["scans"][1]["head_motion"]["degrees"].get<double>(), 1.0);
+  EXPECT_GE(report["scans"][1]["flow_texels"]["rounds"].get<int>(), 1);
+  EXPECT_GE(report["flow_side"].get<int>(), 256);
 }
 
 TEST(HoleFilling, KeepsWhatIsKnownAndGoesOnSmoothly) {

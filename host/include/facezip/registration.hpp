@@ -7,15 +7,27 @@
 #include <vector>
 
 #include "facezip/device.hpp"
+#include "facezip/named_value.hpp"
 #include "facezip/progress.hpp"
 #include "facezip/protected_paths.hpp"
 
 namespace facezip {
 
+/// The steps of a registration, in order.
+enum class RegistrationStep {
+  kLandmarks,  ///< the template's motion and modes or shapes by landmarks alone
+  kModel,      ///< by closest points
+  kBending,    ///< non-rigid ICP
+  kFlow,       ///< expressions: textures drawn onto the neutral's by optical flow
+};
+template <>
+const std::vector<NamedValue<RegistrationStep>>& namesOf();
+
 struct RegistrationOptions {
-  int resolution = 2048;            ///< side of the capture's textures, 64 to 16384
-  std::string unit;                 ///< of the scans; empty: guessed from the neutral's size
-  std::filesystem::path landmarks;  ///< empty: SCANS/landmarks.json
+  int resolution = 2048;                                 ///< side of the capture's textures, 64 to 16384
+  std::string unit;                                      ///< of the scans; empty: guessed from the neutral's size
+  std::filesystem::path landmarks;                       ///< empty: SCANS/landmarks.json
+  RegistrationStep last_step = RegistrationStep::kFlow;  ///< earlier ones: to see what each does
 };
 
 /// What was found of a scan. Lengths in millimetres.
@@ -29,10 +41,16 @@ struct RegisteredScan {
   /// Distances of the scan's points from the mesh: as the model poses it, then as registered.
   double model_mean = 0.0, model_p99 = 0.0;
   double mean = 0.0, p99 = 0.0;
-  double matched = 0.0;      ///< share of the scan's surface within reach of the mesh
-  double coverage = 0.0;     ///< share of the region's texels that the scan shows
-  double degrees = 0.0;      ///< how far the head had turned against the neutral's scan, and
-  double millimetres = 0.0;  ///< how far that and its shift moved it, on average
+  double matched = 0.0;   ///< share of the scan's surface within reach of the mesh
+  double coverage = 0.0;  ///< share of the region's texels that the scan shows
+  int flow_rounds = 0;    ///< of optical flow against the neutral's texture
+  /// Flow against the neutral's texture before and after these, in texels of RegistrationReport::flow_side: mean, and
+  /// what 95 % of the texels do not pass. 0 for the neutral.
+  double flow_before_mean = 0.0, flow_before_p95 = 0.0;
+  double flow_mean = 0.0, flow_p95 = 0.0;
+  double flow_trusted = 0.0;  ///< share of texels whose flow comes back to where it began: others are not believed
+  double degrees = 0.0;       ///< how far the head had turned against the neutral's scan, and
+  double millimetres = 0.0;   ///< how far that and its shift moved it, on average
 };
 
 struct RegistrationReport {
@@ -42,6 +60,7 @@ struct RegistrationReport {
   double template_scale = 1.0;  ///< size of the subject's head beside the template's, without identity modes
   int vertices = 0;
   int region_triangles = 0;
+  int flow_side = 0;  ///< of the pictures that flow is taken of, in texels; 0 without it
   std::vector<std::pair<std::string, double>> seconds;
 };
 

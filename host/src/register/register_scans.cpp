@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -17,6 +18,7 @@
 #include "io/staged_directory.hpp"
 #include "register/hole_filling.hpp"
 #include "register/mesh_registration.hpp"
+#include "register/skin_flow.hpp"
 #include "register/texture_baking.hpp"
 
 namespace facezip {
@@ -149,12 +151,22 @@ RegisteredScan reportOf(const PlacedScan& placed, const geometry::ScanResidual& 
   return report;
 }
 
+void addFlow(const FlowRounds& rounds, RegisteredScan& report) {
+  report.flow_rounds = rounds.rounds;
+  report.flow_before_mean = rounds.before.mean;
+  report.flow_before_p95 = rounds.before.percentile_95;
+  report.flow_mean = rounds.after.mean;
+  report.flow_p95 = rounds.after.percentile_95;
+  report.flow_trusted = rounds.after.trusted;
+}
+
 /// The neutral, its texture without holes, and what they are judged by.
 struct Neutral {
   RegisteredSubject subject;
   BakedTexture texture;
   std::vector<int> region;
   std::vector<bool> texels;
+  std::unique_ptr<SkinFlow> flow;  ///< null without it
 };
 
 PlacedScan place(const Job& job, const fs::path& file, const geometry::TriangleMesh& mesh) {
@@ -168,35 +180,53 @@ raster::UvRaster layoutOf(const Job& job) {
   return {job.source.neutral, geometry::wholeMeshRegion(job.source.neutral), side, side, std::max(4, side / 128)};
 }
 
+BakedTexture bake(const Job& job, const Eigen::MatrixX3d& mesh, const PlacedScan& placed) {
+  ScanTextures textures(job.source.neutral, mesh, job.options.resolution, placed.scan, placed.surface, job.context);
+  return bakeTexture(layoutOf(job), job.source.neutral, mesh, placed.surface, textures, job.progress);
+}
+
 Neutral registerNeutralScan(Job& job, RegistrationReport& report) {
   const PlacedScan placed = place(job, job.folder.neutral, job.source.neutral);
   job.template_unit = unitOfTemplate(job.source, placed);
-  RegisteredSubject subject = registerNeutral(job.source, job.template_unit, placed, job.progress);
+  Neutral neutral{
+      registerNeutral(job.source, job.template_unit, placed, job.options.last_step, job.progress), {}, {}, {}, {}};
+  const RegisteredSubject& subject = neutral.subject;
   const Eigen::MatrixX3d mesh = subject.motion.apply(subject.neutral);
-  BakedTexture texture =
-      bakeTexture(layoutOf(job), job.source.neutral, mesh, placed.scan, placed.surface, job.context, job.progress);
-  std::vector<int> region = regionOf(job, subject);
-  std::vector<bool> texels = texelsOf(job, region);
-  report.scans.push_back(reportOf(placed, subject.model_residual, subject.residual, mesh, coverageOf(texture, texels)));
+  neutral.texture = bake(job, mesh, placed);
+  neutral.region = regionOf(job, subject);
+  neutral.texels = texelsOf(job, neutral.region);
+  report.scans.push_back(
+      reportOf(placed, subject.model_residual, subject.residual, mesh, coverageOf(neutral.texture, neutral.texels)));
   report.template_scale = subject.scale;
-  writeConfidence(job.directory / kConfidence, "neutral", texture);
-  fillTexture(texture, nullptr);
+  writeConfidence(job.directory / kConfidence, "neutral", neutral.texture);
+  fillTexture(neutral.texture, nullptr);
   writeMesh(job, job.directory / "neutral.obj", subject.neutral);
-  writeTexture(job.directory / kMap, "neutral", texture);
-  return {std::move(subject), std::move(texture), std::move(region), std::move(texels)};
+  writeTexture(job.directory / kMap, "neutral", neutral.texture);
+  if (job.options.last_step >= RegistrationStep::kFlow) {
+    neutral.flow =
+        std::make_unique<SkinFlow>(subject.surface, job.source.neutral, placed, mesh, job.context, job.progress);
+    report.flow_side = neutral.flow->side();
+  }
+  return neutral;
 }
 
 RegisteredScan registerExpressionScan(const Job& job, const Neutral& neutral, const fs::path& file) {
   geometry::TriangleMesh mesh = job.source.neutral;
   mesh.positions = neutral.subject.neutral;
   const PlacedScan placed = place(job, file, mesh);
-  const RegisteredExpression expression = registerExpression(neutral.subject, placed, job.progress);
-  const geometry::Similarity motion = headMotionOf(neutral.subject, expression);
-  BakedTexture texture = bakeTexture(layoutOf(job), job.source.neutral, expression.mesh, placed.scan, placed.surface,
-                                     job.context, job.progress);
+  RegisteredExpression expression = registerExpression(neutral.subject, placed, job.options.last_step, job.progress);
+  FlowRounds rounds;
+  if (neutral.flow) {
+    rounds = neutral.flow->draw(expression.pose.place(neutral.subject.expressions), expression.mesh, placed);
+    expression.mesh = rounds.mesh;
+    expression.residual = geometry::residualOf(neutral.subject.surface, expression.mesh, placed.surface);
+  }
+  const geometry::Similarity motion = headMotionOf(neutral.subject, expression.pose, expression.mesh);
+  BakedTexture texture = bake(job, expression.mesh, placed);
   requireSameChannels(texture, neutral.texture, file);
   RegisteredScan report = reportOf(placed, expression.model_residual, expression.residual, expression.mesh,
                                    coverageOf(texture, neutral.texels));
+  addFlow(rounds, report);
   // Against the neutral's scan, which has a motion of its own from the template's place.
   const Eigen::Matrix3d turn = motion.turn * neutral.subject.motion.turn.transpose();
   report.degrees = Eigen::AngleAxisd(turn).angle() * 180.0 / std::numbers::pi;
@@ -234,6 +264,17 @@ std::vector<fs::path> everyFile(const fs::path&) {
 }
 
 }  // namespace
+
+template <>
+const std::vector<NamedValue<RegistrationStep>>& namesOf() {
+  static const std::vector<NamedValue<RegistrationStep>> names = {
+      {RegistrationStep::kLandmarks, "landmarks", "landmarks"},
+      {RegistrationStep::kModel, "model", "model by closest points"},
+      {RegistrationStep::kBending, "bending", "bending"},
+      {RegistrationStep::kFlow, "flow", "optical flow"},
+  };
+  return names;
+}
 
 ProtectedPaths inputsOf(const fs::path& scans, const fs::path& template_directory, const RegistrationOptions& options) {
   ProtectedPaths paths;

@@ -174,6 +174,7 @@ std::string toJson(const RegistrationReport& report) {
                  {"template_scale", report.template_scale},
                  {"vertices", report.vertices},
                  {"region_triangles", report.region_triangles},
+                 {"flow_side", report.flow_side},
                  {"scans", json::array()},
                  {"seconds", secondsJson(report.seconds)}};
   for (const RegisteredScan& scan : report.scans) {
@@ -186,6 +187,11 @@ std::string toJson(const RegistrationReport& report) {
                                {"residual_mm", {{"mean", scan.mean}, {"p99", scan.p99}}},
                                {"matched", scan.matched},
                                {"coverage", scan.coverage},
+                               {"flow_texels",
+                                {{"rounds", scan.flow_rounds},
+                                 {"before", {{"mean", scan.flow_before_mean}, {"p95", scan.flow_before_p95}}},
+                                 {"after", {{"mean", scan.flow_mean}, {"p95", scan.flow_p95}}},
+                                 {"trusted", scan.flow_trusted}}},
                                {"head_motion", {{"degrees", scan.degrees}, {"mm", scan.millimetres}}}});
   }
   return object.dump(2) + "\n";

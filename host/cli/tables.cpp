@@ -251,6 +251,19 @@ void printRegistrationReport(const RegistrationReport& report) {
   printSeconds(report.seconds);
 }
 
+void printAlignmentReport(const AlignmentReport& report) {
+  say("flow of {} against the neutral's, in texels of a picture {} wide\n", report.map, report.flow_width);
+  say("\n{:<34}{:>20}{:>20}{:>10}{:>10}{:>8}\n", "", "before", "after", "believed", "moved by", "rounds");
+  say("{:<34}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "", "mean", "95th pct", "mean", "95th pct", "%", "at most");
+  for (const AlignedExpression& expression : report.expressions) {
+    say("{:<34}{:>10.2f}{:>10.2f}{:>10.2f}{:>10.2f}{:>10.1f}{:>10.2f}{:>8}\n", expression.name, expression.before_mean,
+        expression.before_p95, expression.after_mean, expression.after_p95, 100.0 * expression.trusted,
+        expression.largest, expression.rounds);
+  }
+  say("\n");
+  printSeconds(report.seconds);
+}
+
 void printSolvedClip(const SolvedClip& clip) {
   RigResidual worst;
   double mean = 0.0;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "facezip/alignment.hpp"
 #include "facezip/compress.hpp"
 #include "facezip/evaluate.hpp"
 #include "facezip/registration.hpp"
@@ -15,6 +16,7 @@ namespace facezip {
 std::string toJson(const CompressReport& report);
 std::string toJson(const Evaluation& evaluation);
 std::string toJson(const RegistrationReport& report);
+std::string toJson(const AlignmentReport& report);
 std::string toJson(const RigReport& report);
 std::string toJson(const SolvedClip& clip);
 

@@ -18,6 +18,11 @@ struct GreyPicture {
   std::span<const std::uint8_t> known;  ///< [height][width], 0: nothing was seen
 };
 
+/// The grey of a sample of one channel or three, as greys of encoded colours are made (Rec. 601).
+inline float greyOf(const float* sample, int channels) {
+  return channels == 3 ? 0.299f * sample[0] + 0.587f * sample[1] + 0.114f * sample[2] : sample[0];
+}
+
 /// Flow both ways: texel x of `from` shows what texel x + forward(x) of `to` does, and the other way about.
 struct TextureFlow {
   int width = 0;

@@ -107,9 +107,7 @@ SkinPicture SkinFlow::pictureOf(const Eigen::MatrixX3d& mesh, const PlacedScan& 
   picture.grey.resize(picture.seen.size());
   picture.known.resize(picture.seen.size());
   for (std::size_t i = 0; i < picture.seen.size(); ++i) {
-    const float* sample = &samples[i * channels];
-    // Rec. 601, as greys of encoded colours are made.
-    picture.grey[i] = channels == 3 ? 0.299f * sample[0] + 0.587f * sample[1] + 0.114f * sample[2] : sample[0];
+    picture.grey[i] = flow::greyOf(&samples[i * channels], textures.channels());
     picture.known[i] = picture.seen[i].triangle >= 0 ? 1 : 0;
   }
   return picture;

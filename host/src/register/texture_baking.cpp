@@ -10,7 +10,7 @@
 
 #include "facezip/error.hpp"
 #include "facezip/geometry/mesh_edges.hpp"
-#include "image/set_sample.hpp"
+#include "image/averaged_image.hpp"
 #include "io/counts.hpp"
 #include "register/resample.hpp"
 
@@ -25,38 +25,6 @@ constexpr int kBandRows = 128;
 std::uint8_t confidenceOf(double cosine, double distance) {
   const double share = distance / kHalfConfidence;
   return static_cast<std::uint8_t>(std::lround(std::clamp(255.0 * cosine / (1.0 + share * share), 1.0, 255.0)));
-}
-
-/// The texture with every `factor` by `factor` texels averaged to one; those at the right and below may be fewer.
-/// Alpha and what else is beyond one or three channels is left out.
-image::Image readAveraged(const std::filesystem::path& file, int factor) {
-  image::ImageReader reader(file);
-  const image::ImageShape from = reader.shape();
-  image::ImageShape to = from;
-  to.width = divideUp(from.width, factor);
-  to.height = divideUp(from.height, factor);
-  to.channels = from.channels >= 3 ? 3 : 1;
-  image::Image averaged{to, std::vector<std::byte>(toSize(to.height) * to.rowBytes())};
-  image::Image rows{from, {}};
-  const Layout<3> place(to.height, to.width, to.channels);
-  for (int y = 0; y < to.height; ++y) {
-    const int begin = y * factor, end = std::min(begin + factor, from.height);
-    rows.shape.height = end - begin;
-    rows.samples.resize(toSize(end - begin) * from.rowBytes());
-    reader.readRows(begin, end, rows.samples);
-    const Layout<3> at(end - begin, from.width, from.channels);
-    tbb::parallel_for(0, to.width, [&](int x) {
-      const int columns = std::min(factor, from.width - x * factor);
-      for (int c = 0; c < to.channels; ++c) {
-        double sum = 0.0;
-        for (int j = 0; j < end - begin; ++j) {
-          for (int i = 0; i < columns; ++i) sum += double{image::sampleAt(rows, at(j, x * factor + i, c))};
-        }
-        image::setSample(averaged, place(y, x, c), static_cast<float>(sum / ((end - begin) * columns)));
-      }
-    });
-  }
-  return averaged;
 }
 
 /// Area of the wanted triangles in their texture plane, of 1, for each square millimetre of skin; 0 without any.
@@ -133,7 +101,7 @@ ScanTextures::ScanTextures(const geometry::TriangleMesh& mesh, const Eigen::Matr
     const image::ImageShape shape = image::ImageReader(scan.textures[m]).shape();
     const double texels = texelsOfSkin(scan, surface, m, shape);
     const int factor = layout > 0.0 ? std::clamp(static_cast<int>(std::sqrt(texels / layout)), 1, 64) : 1;
-    const image::Image texture = readAveraged(scan.textures[m], factor);
+    const image::Image texture = image::readAveraged(scan.textures[m], factor);
     sources_.push_back({static_cast<int>(m), static_cast<double>(shape.width) / factor,
                         static_cast<double>(shape.height) / factor, TextureSampler(context, texture)});
     const image::ImageShape& first = sources_.front().sampler.shape();

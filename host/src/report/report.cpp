@@ -197,6 +197,23 @@ std::string toJson(const RegistrationReport& report) {
   return object.dump(2) + "\n";
 }
 
+std::string toJson(const AlignmentReport& report) {
+  json object = {
+      {"facezip_report", "align"},       {"version", kReportVersion},    {"map", report.map},
+      {"flow_width", report.flow_width}, {"expressions", json::array()}, {"seconds", secondsJson(report.seconds)}};
+  for (const AlignedExpression& expression : report.expressions) {
+    object["expressions"].push_back({{"name", expression.name},
+                                     {"moved", expression.moved},
+                                     {"flow_texels",
+                                      {{"rounds", expression.rounds},
+                                       {"before", {{"mean", expression.before_mean}, {"p95", expression.before_p95}}},
+                                       {"after", {{"mean", expression.after_mean}, {"p95", expression.after_p95}}},
+                                       {"trusted", expression.trusted},
+                                       {"largest", expression.largest}}}});
+  }
+  return object.dump(2) + "\n";
+}
+
 std::string toJson(const RigReport& report) {
   json object = json::parse(rig::rigJson(report, 1.0));
   for (const char* of_the_file : {"format", "generator", "millimetres_per_unit"}) object.erase(of_the_file);

@@ -37,7 +37,7 @@ def main():
     parser.add_argument("--steps", default="flow")
     options = parser.parse_args()
     options.work.mkdir(parents=True, exist_ok=True)
-    columns = ["surface_mean", "drift_mean", "drift_p95", "still_mean", "texture"]
+    columns = ["surface_mean", "drift_mean", "drift_p95", "still_mean", "texture", "slide"]
     print(f"{'seed':>4} {'modes':>5} {'step':>9} " + " ".join(f"{c:>12}" for c in columns) + f" {'seconds':>8}")
     for modes in map(int, options.modes.split(",")):
         for seed in map(int, options.seeds.split(",")):
@@ -55,7 +55,7 @@ def measure(options, modes, seed, step, columns):
     seconds = time.time() - begin
     judged = subprocess.run([sys.executable, options.tools / "judge_scans.py", options.capture, capture], check=True,
                             capture_output=True, text=True)
-    found = json.loads(judged.stdout)["all"]
+    found = json.loads(judged.stdout)["all"] | {"slide": json.loads(judged.stdout)["neutral"]["slide_mean"]}
     print(f"{seed:>4} {modes:>5} {step:>9} " + " ".join(f"{found[c]:>12.3f}" for c in columns) + f" {seconds:>8.1f}", flush=True)
 
 

@@ -26,8 +26,9 @@ void addRegisterCommand(CLI::App& app, const CommonOptions& common) {
   CLI::App* command =
       app.add_subcommand("register", "Makes a capture of raw scans: a template bent onto each, textures in its layout");
   command
-      ->add_option("scans", arguments->scans,
-                   "Directory of scans: neutral.obj, an OBJ file for each expression, textures, landmarks.json")
+      ->add_option(
+          "scans", arguments->scans,
+          "Directory of scans: neutral.obj, an OBJ (or GLB) file for each expression, textures, landmarks.json")
       ->required()
       ->type_name("SCANS");
   command
@@ -54,6 +55,8 @@ void addRegisterCommand(CLI::App& app, const CommonOptions& common) {
                    "The last step of landmarks, model, bending, flow: to see what each does")
       ->check(CLI::IsMember(allNames<RegistrationStep>()))
       ->capture_default_str();
+  command->add_flag("--keep-colour", arguments->options.keep_colour,
+                    "Leave what the light changed between scans in the textures");
   addDeviceOption(*command, arguments->device);
   command->add_option("--report", arguments->report, "Also write what was found as JSON (docs/reports.md)")
       ->type_name("FILE");

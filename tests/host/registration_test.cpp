@@ -133,6 +133,7 @@ TEST(Registration, FlowDrawsTexturesOntoTheNeutrals) {
   options.resolution = kSide;
   options.unit = "cm";
   options.last_step = RegistrationStep::kBending;
+  options.keep_colour = true;
   Notes notes;
   registerScans(made.folder / "scans", made.folder / "template", made.folder / "bent", options, test::testDevice(),
                 notes);
@@ -143,6 +144,26 @@ TEST(Registration, FlowDrawsTexturesOntoTheNeutrals) {
     return (moved - truth).rowwise().norm().mean();
   };
   EXPECT_LT(error("capture"), 0.9 * error("bent"));
+  const image::Image kept = image::readImage(made.folder / "bent/albedo/open.png");
+  double blue = 0.0, red = 0.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(kSide * kSide); ++i) {
+    red += double{image::sampleAt(kept, 3 * i)};
+    blue += double{image::sampleAt(kept, 3 * i + 2)};
+  }
+  EXPECT_NEAR(blue / red, test::ScanSet::kLight[2] / test::ScanSet::kLight[0], 0.05);
+}
+
+TEST(Registration, TheLightOfTheNeutralIsThatOfAll) {
+  const Registered& made = Registered::once();
+  const RegisteredScan& open = made.report.scans[1];
+  EXPECT_TRUE(made.report.scans[0].colour_gain.empty());
+  ASSERT_EQ(open.colour_gain.size(), 3u);
+  for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(open.colour_gain[c], test::ScanSet::kLight[c], 0.01);
+  const image::Image texture = image::readImage(made.folder / "capture/albedo/open.png");
+  double means[3] = {};
+  for (std::size_t i = 0; i < 3u * kSide * kSide; ++i) means[i % 3] += double{image::sampleAt(texture, i)};
+  EXPECT_NEAR(means[0] / means[1], 1.0, 0.01);
+  EXPECT_NEAR(means[2] / means[1], 1.0, 0.01);
 }
 
 TEST(Registration, TheHeadsMotionIsTakenOutAndTold) {

@@ -27,6 +27,7 @@ struct RegistrationOptions {
   int resolution = 2048;                                 ///< side of the capture's textures, 64 to 16384
   std::string unit;                                      ///< of the scans; empty: guessed from the neutral's size
   std::filesystem::path landmarks;                       ///< empty: SCANS/landmarks.json
+  bool keep_colour = false;                              ///< leave what light changed between the scans in the textures
   RegistrationStep last_step = RegistrationStep::kFlow;  ///< earlier ones: to see what each does
 };
 
@@ -49,8 +50,11 @@ struct RegisteredScan {
   double flow_before_mean = 0.0, flow_before_p95 = 0.0;
   double flow_mean = 0.0, flow_p95 = 0.0;
   double flow_trusted = 0.0;  ///< share of texels whose flow comes back to where it began: others are not believed
-  double degrees = 0.0;       ///< how far the head had turned against the neutral's scan, and
-  double millimetres = 0.0;   ///< how far that and its shift moved it, on average
+  /// Of each channel: by how much the scan was brighter than the neutral's on still skin, which was taken out. Empty
+  /// for the neutral and with RegistrationOptions::keep_colour.
+  std::vector<double> colour_gain;
+  double degrees = 0.0;      ///< how far the head had turned against the neutral's scan, and
+  double millimetres = 0.0;  ///< how far that and its shift moved it, on average
 };
 
 struct RegistrationReport {
@@ -71,7 +75,7 @@ ProtectedPaths inputsOf(const std::filesystem::path& scans, const std::filesyste
 /// Registers the scans of a directory to a template and writes them as a capture (docs/registration.md):
 /// neutral.obj, expressions/NAME.obj, albedo/NAME.png, confidence/NAME.png, face_region.txt, capture.json. The capture
 /// appears whole or not at all; an earlier one that this made is replaced.
-/// scans               NAME.obj with a texture each, "neutral" among them, and landmarks.json
+/// scans               NAME.obj or NAME.glb with a texture each, "neutral" among them, and landmarks.json
 /// template_directory  neutral.obj with UVs, landmarks.json; shapes (NAME.obj) and identity modes where it has any
 /// Throws InputError (a file, an option, scans that do not fit the template), DeviceError, OutputError, SolverError,
 /// Cancelled.

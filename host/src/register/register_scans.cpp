@@ -16,6 +16,7 @@
 #include "image/set_sample.hpp"
 #include "io/counts.hpp"
 #include "io/staged_directory.hpp"
+#include "register/colour_drift.hpp"
 #include "register/hole_filling.hpp"
 #include "register/mesh_registration.hpp"
 #include "register/skin_flow.hpp"
@@ -52,7 +53,7 @@ void requireSaneOptions(const RegistrationOptions& options) {
 geometry::LengthUnit unitOf(const RegistrationOptions& options, const fs::path& neutral, Progress& progress) {
   if (!options.unit.empty()) return geometry::parseUnit(options.unit);
   try {
-    const geometry::UnitGuess guess = geometry::guessUnit(geometry::readObj(neutral));
+    const geometry::UnitGuess guess = geometry::guessUnit(readScanMesh(neutral));
     progress.note(guess.explanation);
     return guess.unit;
   } catch (const InputError& error) {
@@ -224,9 +225,15 @@ RegisteredScan registerExpressionScan(const Job& job, const Neutral& neutral, co
   const geometry::Similarity motion = headMotionOf(neutral.subject, expression.pose, expression.mesh);
   BakedTexture texture = bake(job, expression.mesh, placed);
   requireSameChannels(texture, neutral.texture, file);
+  const Eigen::MatrixX3d moved = (expression.mesh.rowwise() - motion.shift) * motion.turn;
   RegisteredScan report = reportOf(placed, expression.model_residual, expression.residual, expression.mesh,
                                    coverageOf(texture, neutral.texels));
   addFlow(rounds, report);
+  if (!job.options.keep_colour) {
+    report.colour_gain =
+        colourGains(layoutOf(job), job.source.neutral, neutral.subject.neutral, moved, neutral.texture, texture);
+    takeOut(report.colour_gain, texture);
+  }
   // Against the neutral's scan, which has a motion of its own from the template's place.
   const Eigen::Matrix3d turn = motion.turn * neutral.subject.motion.turn.transpose();
   report.degrees = Eigen::AngleAxisd(turn).angle() * 180.0 / std::numbers::pi;
@@ -236,8 +243,7 @@ RegisteredScan registerExpressionScan(const Job& job, const Neutral& neutral, co
                            .mean();
   writeConfidence(job.directory / kConfidence, report.name, texture);
   fillTexture(texture, &neutral.texture);
-  writeMesh(job, job.directory / "expressions" / (report.name + ".obj"),
-            (expression.mesh.rowwise() - motion.shift) * motion.turn);
+  writeMesh(job, job.directory / "expressions" / (report.name + ".obj"), moved);
   writeTexture(job.directory / kMap, report.name, texture);
   return report;
 }

@@ -192,6 +192,7 @@ std::string toJson(const RegistrationReport& report) {
                                  {"before", {{"mean", scan.flow_before_mean}, {"p95", scan.flow_before_p95}}},
                                  {"after", {{"mean", scan.flow_mean}, {"p95", scan.flow_p95}}},
                                  {"trusted", scan.flow_trusted}}},
+                               {"colour_gain", scan.colour_gain},
                                {"head_motion", {{"degrees", scan.degrees}, {"mm", scan.millimetres}}}});
   }
   return object.dump(2) + "\n";

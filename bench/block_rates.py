@@ -2,8 +2,10 @@
 """Run-time bytes and RMSE of packages in block formats, beside every texture in the same blocks: a table in Markdown.
 
 usage: block_rates.py FACEZIP CAPTURE WORK [MAP]
+       block_rates.py --plot WORK PICTURE
 
 FACEZIP  the command; CAPTURE  a capture; WORK  a folder for packages, which is made; MAP  [albedo]
+The rows are kept in WORK/rates.json; --plot draws them (matplotlib, Debian: python3-matplotlib) into PICTURE (.svg).
 RMSE is what `facezip evaluate` decodes from the files, in 1/255, over covered texels of all expressions. Mip levels, a
 third more of either, are not counted.
 """
@@ -47,12 +49,40 @@ def main(facezip, capture, work, name="albedo"):
             for rival in RIVALS:
                 rows.append((f"every texture in {rival}", found["bytes"][f"every-{rival}"],
                              found["maps"][name]["rmse"][f"every-{rival}"]))
+    (work / "rates.json").write_text(json.dumps(rows, indent=1))
     print("| | memory at run time | RMSE, 0..255 |\n|---|---|---|")
     for title, size, rmse in sorted(rows, key=lambda row: -row[1]):
         print(f"| {title} | {size / 1e6:.2f} MB | {rmse:.3f} |")
 
 
+def plot(work, picture):
+    import matplotlib
+    matplotlib.use("svg")
+    matplotlib.rcParams["svg.hashsalt"] = "facezip"  # the same bytes every time
+    from matplotlib import pyplot
+    rows = json.loads((Path(work) / "rates.json").read_text())
+    figure, axes = pyplot.subplots(figsize=(8, 4.8))
+    for ours, colour, label in ((False, "tab:gray", "every texture in blocks"), (True, "tab:blue", "facezip")):
+        points = sorted((size / 1e6, rmse, title) for title, size, rmse in rows if ("facezip" in title) == ours)
+        axes.plot([p[0] for p in points], [p[1] for p in points], "o", color=colour, label=label)
+        for size, rmse, title in points:
+            short = title.replace("**", "").replace("every texture in ", "").replace("facezip ", "").split(", weights")[0]
+            axes.annotate(short, (size, rmse), textcoords="offset points", xytext=(5, 3), fontsize=6.5, color=colour)
+    axes.set_xscale("log", base=2)
+    axes.set_xticks([1, 2, 4, 8, 16], ["1", "2", "4", "8", "16"])
+    axes.set_xlabel("memory at run time, MB")
+    axes.set_ylabel("RMSE over the face, 0..255")
+    axes.set_ylim(bottom=0)
+    axes.grid(alpha=0.3)
+    axes.legend()
+    figure.tight_layout()
+    figure.savefig(picture, metadata={"Date": None})
+
+
 if __name__ == "__main__":
+    if len(sys.argv) == 4 and sys.argv[1] == "--plot":
+        plot(*sys.argv[2:])
+        sys.exit()
     if len(sys.argv) not in (4, 5):
         sys.exit(__doc__)
     main(*sys.argv[1:])

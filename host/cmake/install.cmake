@@ -19,3 +19,8 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/facezipConfigVersion.cmak
 install(FILES ${PROJECT_BINARY_DIR}/facezipConfig.cmake ${PROJECT_BINARY_DIR}/facezipConfigVersion.cmake
               host/cmake/opencv_video.cmake
   DESTINATION ${FACEZIP_CMAKE_DIR})
+
+# For builds without CMake: the C interface, which needs nothing else at link time.
+file(RELATIVE_PATH FACEZIP_PKGCONFIG_TO_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+configure_file(host/cmake/facezip-runtime.pc.in facezip-runtime.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/facezip-runtime.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

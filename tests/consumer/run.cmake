@@ -1,5 +1,5 @@
 # Installs facezip, builds the consumer against the installed package alone and runs it.
-#   BUILD_DIR facezip's build, WORK_DIR scratch, SOURCE_DIR this folder, FACEZIP the command
+#   BUILD_DIR facezip's build, WORK_DIR scratch, SOURCE_DIR this folder, LINK_FLAGS, C_COMPILER
 function(run)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE result)
   if(NOT result EQUAL 0)
@@ -20,6 +20,16 @@ run(${WORK_DIR}/prefix/bin/facezip blend ${WORK_DIR}/package --weights jaw_open_
 run(${WORK_DIR}/prefix/bin/facezip evaluate ${WORK_DIR}/capture ${WORK_DIR}/package --baselines none --blends 0
     --picture ${WORK_DIR}/errors.png)
 run(${WORK_DIR}/build/runtime ${WORK_DIR}/package)
+# Without CMake: what pkg-config says is enough to build the same program.
+file(GLOB_RECURSE pc ${WORK_DIR}/prefix/*/facezip-runtime.pc)
+get_filename_component(folder ${pc} DIRECTORY)
+find_program(PKG_CONFIG pkg-config REQUIRED)
+execute_process(COMMAND ${CMAKE_COMMAND} -E env PKG_CONFIG_PATH=${folder} ${PKG_CONFIG} --cflags --libs facezip-runtime
+                OUTPUT_VARIABLE flags OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+separate_arguments(flags)
+get_filename_component(libraries ${folder} DIRECTORY)
+run(${C_COMPILER} ${SOURCE_DIR}/runtime.c -o ${WORK_DIR}/plain ${flags} -Wl,-rpath,${libraries} ${LINK_FLAGS})
+run(${WORK_DIR}/plain ${WORK_DIR}/package)
 if(NOT EXISTS ${WORK_DIR}/package/package.json)
   message(FATAL_ERROR "the consumer wrote no package")
 endif()

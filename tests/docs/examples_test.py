@@ -1,11 +1,11 @@
 """Runs the commands that documents show, as they stand there, on the built-in capture.
 
-    examples_test.py REPOSITORY FACEZIP RUNTIME_LIBRARY C_PROGRAM WORK
+    examples_test.py REPOSITORY FACEZIP RUNTIME_LIBRARY PROGRAMS WORK
 
 A document is a session in a folder of its own: its lines that start with four blanks and "facezip". What commands need is
 made by those above them. To save time, a wrapper makes the built-in capture small and lets searches start less often; it
-changes nothing that is printed. `view` is ended when it serves. Programs in C and Python run where README's session left a
-package; READMEs of exports where they were written, and Blender's where Blender is.
+changes nothing that is printed. `view` is ended when it serves. Programs of docs/examples, built in PROGRAMS, run where README's session left a
+capture and a package; READMEs of exports where they were written, and Blender's where Blender is.
 """
 
 import os
@@ -74,18 +74,24 @@ def run_exports(package, repository, work, environment):
     return count
 
 
-def run_programs(package_folder, repository, runtime, c_program, environment):
-    subprocess.run([c_program], cwd=package_folder, env=environment, check=True)
-    text = (repository / "docs" / "runtime.md").read_text()
-    program = re.search(r"^```python\n(.*?)^```", text, re.DOTALL | re.MULTILINE).group(1)
+def run_programs(session, repository, runtime, programs, environment):
+    """Of docs/examples: the frames of C and of Python must be the same."""
+    weights = ["smile_open=0.7", "AU26=0.2"]
+    call = {"cwd": session, "check": True}
+    subprocess.run([programs / "compress_capture", "capture", "small.facezip", "0.1"], env=environment, **call)
+    subprocess.run([programs / "blend_frame", "face.facezip", "c.ppm", *weights], env=environment, **call)
     # A sanitized library cannot be loaded by a Python that is not.
-    if "FACEZIP_SANITIZED" not in environment:
-        libraries = {**environment, "LD_LIBRARY_PATH": str(runtime.parent)}
-        subprocess.run([sys.executable, "-c", program], cwd=package_folder, env=libraries, check=True)
+    if "FACEZIP_SANITIZED" in environment:
+        return
+    libraries = {**environment, "LD_LIBRARY_PATH": str(runtime.parent)}
+    program = repository / "docs" / "examples" / "blend_frame.py"
+    subprocess.run([sys.executable, program, "face.facezip", "python.ppm", *weights], env=libraries, **call)
+    if (session / "c.ppm").read_bytes() != (session / "python.ppm").read_bytes():
+        sys.exit("blend_frame.c and blend_frame.py differ")
 
 
 def main():
-    repository, facezip, runtime, c_program, work = (pathlib.Path(argument) for argument in sys.argv[1:])
+    repository, facezip, runtime, programs, work = (pathlib.Path(argument) for argument in sys.argv[1:])
     shutil.rmtree(work, ignore_errors=True)
     (work / "bin").mkdir(parents=True)
     wrapper = work / "bin" / "facezip"
@@ -100,7 +106,7 @@ def main():
             sys.exit(f"{document} shows no commands")
     package = work / "README" / "face.facezip"
     counts["exports"] = run_exports(package, repository, work, environment)
-    run_programs(package.parent, repository, runtime, c_program, environment)
+    run_programs(package.parent, repository, runtime, programs, environment)
     print(", ".join(f"{name}: {count}" for name, count in counts.items() if count))
 
 

@@ -1,6 +1,6 @@
-"""Makes source files of the code that documents show: snippets.py LANGUAGE OUTPUT DOCUMENT...
+"""Makes a source file of the C++ that documents show: snippets.py OUTPUT DOCUMENT...
 
-cpp: a function for each block, behind the #include lines of all. c: the one block, a program.
+A function for each block, behind the #include lines of all.
 """
 
 import pathlib
@@ -27,16 +27,5 @@ def cpp_source(documents):
         f"void snippet{n}();" for n in range(len(functions))) + "\n\n" + "\n".join(functions)
 
 
-def main():
-    language, output, documents = sys.argv[1], pathlib.Path(sys.argv[2]), sys.argv[3:]
-    if language == "cpp":
-        output.write_text(cpp_source(documents))
-        return
-    blocks = [block for document in documents for block in blocks_of(document, language)]
-    if len(blocks) != 1:
-        sys.exit(f"{len(blocks)} blocks of {language}, not one")
-    output.write_text(blocks[0])
-
-
 if __name__ == "__main__":
-    main()
+    pathlib.Path(sys.argv[1]).write_text(cpp_source(sys.argv[2:]))

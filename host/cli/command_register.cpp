@@ -55,6 +55,8 @@ void addRegisterCommand(CLI::App& app, const CommonOptions& common) {
                    "The last step of landmarks, model, bending, flow: to see what each does")
       ->check(CLI::IsMember(allNames<RegistrationStep>()))
       ->capture_default_str();
+  addMapsOption(*command, arguments->options.maps,
+                "albedo, and what the scans' shape has beyond the template's: normal, displacement (default: albedo)");
   command->add_flag("--keep-colour", arguments->options.keep_colour,
                     "Leave what the light changed between scans in the textures");
   addDeviceOption(*command, arguments->device);

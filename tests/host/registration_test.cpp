@@ -39,6 +39,7 @@ struct Registered {
     RegistrationOptions options;
     options.resolution = kSide;
     options.unit = "cm";
+    options.maps = {"albedo", "normal", "displacement"};
     report =
         registerScans(folder / "scans", folder / "template", folder / "capture", options, test::testDevice(), notes);
   }
@@ -112,8 +113,9 @@ TEST(Registration, TheResultIsACapture) {
   const Registered& made = Registered::once();
   const Capture capture = openCapture(made.folder / "capture");
   EXPECT_THAT(capture.expressions, testing::ElementsAre("open"));
-  ASSERT_EQ(capture.maps.size(), 1u);
+  ASSERT_EQ(capture.maps.size(), 3u);
   EXPECT_EQ(capture.maps[0].name, "albedo");
+  EXPECT_EQ(capture.maps[1].colour_space, "linear");
   EXPECT_EQ(capture.unit, "cm");
   EXPECT_TRUE(capture.face_region.has_value());
   const geometry::TriangleMesh neutral = geometry::readObj(capture.neutral_mesh);
@@ -164,6 +166,24 @@ TEST(Registration, TheLightOfTheNeutralIsThatOfAll) {
   for (std::size_t i = 0; i < 3u * kSide * kSide; ++i) means[i % 3] += double{image::sampleAt(texture, i)};
   EXPECT_NEAR(means[0] / means[1], 1.0, 0.01);
   EXPECT_NEAR(means[2] / means[1], 1.0, 0.01);
+}
+
+TEST(Registration, WhatTheMeshFollowsIsNeitherInNormalsNorInHeights) {
+  const Registered& made = Registered::once();
+  const image::Image normal = image::readImage(made.folder / "capture/normal/open.png");
+  const image::Image height = image::readImage(made.folder / "capture/displacement/open.png");
+  ASSERT_EQ(normal.shape, (image::ImageShape{kSide, kSide, 3, image::SampleType::kUint8}));
+  ASSERT_EQ(height.shape, (image::ImageShape{kSide, kSide, 1, image::SampleType::kUint16}));
+  const image::Image confidence = image::readImage(made.folder / "capture/confidence/open.png");
+  double up = 0.0, off = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(kSide * kSide); ++i) {
+    if (image::sampleAt(confidence, i) < 0.9f) continue;
+    up += 2.0 * double{image::sampleAt(normal, 3 * i + 2)} - 1.0;
+    off += 4.0 * std::abs(double{image::sampleAt(height, i)} - 0.5);
+    count += 1.0;
+  }
+  EXPECT_GT(up / count, 0.97);
+  EXPECT_LT(off / count, 0.2);
 }
 
 TEST(Registration, TheHeadsMotionIsTakenOutAndTold) {

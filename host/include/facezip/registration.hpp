@@ -24,9 +24,13 @@ template <>
 const std::vector<NamedValue<RegistrationStep>>& namesOf();
 
 struct RegistrationOptions {
-  int resolution = 2048;                                 ///< side of the capture's textures, 64 to 16384
-  std::string unit;                                      ///< of the scans; empty: guessed from the neutral's size
-  std::filesystem::path landmarks;                       ///< empty: SCANS/landmarks.json
+  int resolution = 2048;            ///< side of the capture's textures, 64 to 16384
+  std::string unit;                 ///< of the scans; empty: guessed from the neutral's size
+  std::filesystem::path landmarks;  ///< empty: SCANS/landmarks.json
+  /// "albedo", and of the scans' shape, which is finer than the template: "normal" (8-bit RGB in the frame of each
+  /// mesh, +x along u, +y along v), "displacement" (16-bit grey, 1/2 + height / 4 mm), as the built-in capture has
+  /// them.
+  std::vector<std::string> maps = {"albedo"};
   bool keep_colour = false;                              ///< leave what light changed between the scans in the textures
   RegistrationStep last_step = RegistrationStep::kFlow;  ///< earlier ones: to see what each does
 };

@@ -1,8 +1,8 @@
 // permutation_search_bench.cpp - steps on the host: 100 restarts of coordinate descent, and the solver with its bound.
-#include "compress/search/permutation_search.hpp"
-#include "compress/search/permutation_solver.hpp"
 #include "problems/seam_cost.hpp"
 #include "roof.hpp"
+#include "search/permutation_search.hpp"
+#include "search/permutation_solver.hpp"
 
 namespace facezip::bench {
 namespace {

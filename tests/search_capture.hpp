@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "compress/search/gram_matrices.hpp"
+#include "search/gram_matrices.hpp"
 
 namespace facezip::test {
 

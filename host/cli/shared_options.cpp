@@ -5,12 +5,22 @@
 namespace facezip::cli {
 namespace {
 
-BlockFormat parseTextureFormat(const std::string& name, const std::string& option) {
+/// Formats of one kind, for a target or budget to choose from. ASTC's square blocks: others lie between them.
+std::vector<BlockFormat> formatChoice(const std::string& name) {
+  if (name == "bc") return {BlockFormat::kBc7, BlockFormat::kBc1};
+  if (name != "astc") return {};
+  return {BlockFormat::kAstc4x4, BlockFormat::kAstc5x5,   BlockFormat::kAstc6x6,
+          BlockFormat::kAstc8x8, BlockFormat::kAstc10x10, BlockFormat::kAstc12x12};
+}
+
+void parseTextureFormat(const std::string& name, CompressOptions& options) {
+  options.format_choice = formatChoice(name);
+  if (name == "png" || !options.format_choice.empty()) return;
   try {
-    return blockFormatOf(name, option);
+    options.texture_format = blockFormatOf(name, "--texture-format");
   } catch (const InputError& error) {
     InputError::Parts parts = error.parts();
-    parts.expected = "png or " + parts.expected;
+    parts.expected = "png, or bc or astc with a budget or target, or " + parts.expected;
     throw InputError(parts);
   }
 }
@@ -82,7 +92,8 @@ void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
   CLI::Option* format =
       command
           .add_option("--texture-format", arguments.texture_format,
-                      "png, or a block format that textures of 8 bits are fitted to: " + blockFormatNames())
+                      "png, or a block format that textures of 8 bits are fitted to: " + blockFormatNames() +
+                          "; bc or astc to let a target or budget choose one of that kind")
           ->type_name("FORMAT")
           ->capture_default_str();
   command
@@ -142,9 +153,7 @@ CompressOptions parseCompressOptions(const CompressArguments& arguments) {
   } catch (const InputError& error) {
     throw error.in("--mask-radius " + arguments.mask_radius);
   }
-  if (arguments.texture_format != "png") {
-    options.texture_format = parseTextureFormat(arguments.texture_format, "--texture-format");
-  }
+  parseTextureFormat(arguments.texture_format, options);
   if (!arguments.difference_format.empty()) {
     options.difference_format = blockFormatOf(arguments.difference_format, "--difference-format");
   }

@@ -46,11 +46,13 @@ void printErrors(const Evaluation& evaluation, const Evaluation::Map& map) {
 }
 
 void printTexelErrors(const std::string& name, const TexelErrors& errors) {
-  say("{:<34}{:>14.2f}{:>14.2f}{:>14.2f}\n", name, errors.psnr, errors.p99, errors.max);
+  say("{:<34}{:>14.2f}{:>14.2f}{:>14.2f}{:>10}{:>8}{:>8}\n", name, errors.psnr, errors.p99, errors.max,
+      errors.beyond[0], errors.beyond[1], errors.beyond[2]);
 }
 
 void printDetail(const Evaluation& evaluation, const Evaluation::Map& map) {
-  say("\n{:<34}{:>14}{:>14}{:>14}\n", map.name + ": texels of the package", "PSNR dB", "99th pct", "largest");
+  say("\n{:<34}{:>14}{:>14}{:>14}{:>10}{:>8}{:>8}\n", map.name + ": texels of the package", "PSNR dB", "99th pct",
+      "largest", ">= 8", ">= 16", ">= 32");
   const auto& package = map.detail.at("package");
   for (std::size_t n = 0; n < evaluation.expressions.size(); ++n) {
     printTexelErrors(evaluation.expressions[n], package.per_expression[n]);
@@ -132,10 +134,11 @@ void printPermutation(const CompressReport& report) {
 /// What a target or budget was chosen from, and what was taken.
 void printRateCurve(const CompressReport& report) {
   if (report.rate_curve.empty()) return;
-  say("{:<14}{:>12}{:>12}{:>16}\n", "differences", "weights at", "memory", "expected RMSE");
+  say("{:<14}{:<12}{:>12}{:>12}{:>16}\n", "differences", "format", "weights at", "memory", "expected RMSE");
   for (const RatePoint& point : report.rate_curve) {
-    say("{:<14}{:>12}{:>12}{:>16.3f}{}\n",
+    say("{:<14}{:<12}{:>12}{:>12}{:>16.3f}{}\n",
         fmt::format("{}{}", point.differences, point.code_bits == 16 ? ", 16-bit" : ""),
+        point.difference_format ? blockFormatName(*point.difference_format) : "images",
         fmt::format("1/{}", point.weight_scale), formatMegabytes(point.bytes), point.rmse,
         point == report.rate ? "  <- taken" : "");
   }

@@ -10,5 +10,6 @@ if(NOT TARGET OpenCV::video)
   add_library(OpenCV::video INTERFACE IMPORTED)
   set_target_properties(OpenCV::video PROPERTIES
     INTERFACE_INCLUDE_DIRECTORIES "${FACEZIP_OPENCV_INCLUDE}"
-    INTERFACE_LINK_LIBRARIES "${FACEZIP_OPENCV_LIBRARIES}")
+    # Programs that take no flow do not load it, though the library that they link could.
+    INTERFACE_LINK_LIBRARIES "-Wl,--push-state,--as-needed;${FACEZIP_OPENCV_LIBRARIES};-Wl,--pop-state")
 endif()

@@ -1,4 +1,4 @@
-#include "compress/rate/block_rank_energy.hpp"
+#include "rate/block_rank_energy.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "compress/face.hpp"
+#include "face/face.hpp"
 #include "facezip/evaluate.hpp"
 #include "facezip/reconstruct.hpp"
 #include "file_contents.hpp"

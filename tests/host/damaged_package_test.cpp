@@ -9,13 +9,13 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "compress/codes/texture_encoding.hpp"
 #include "facezip/check.hpp"
 #include "facezip/package.hpp"
 #include "file_contents.hpp"
 #include "image/image_file.hpp"
 #include "io/staged_directory.hpp"
 #include "package/package_json.hpp"
+#include "refine/texture_encoding.hpp"
 #include "sample_package.hpp"
 #include "temporary_directory.hpp"
 

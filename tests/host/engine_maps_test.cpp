@@ -15,7 +15,7 @@
 namespace facezip {
 namespace {
 using exporting::EngineMap;
-using exporting::MapRole;
+using mesh::MapRole;
 using testing::HasSubstr;
 
 /// Maps of every number of channels, of 8 and 16 bits, in two sets of weights, with names that no shader takes.
@@ -66,7 +66,7 @@ TEST(MapRoles, NamesOfTheTradeAreKnown) {
                                                     {"protocol", MapRole::kOther},
                                                     {"displacement", MapRole::kOther},
                                                     {"", MapRole::kOther}};
-  for (const auto& [name, role] : kNames) EXPECT_EQ(exporting::roleOf(name), role) << name;
+  for (const auto& [name, role] : kNames) EXPECT_EQ(mesh::roleOf(name), role) << name;
 }
 
 TEST(MapRoles, WhatNoMaterialShowsIsSaid) {
@@ -76,11 +76,11 @@ TEST(MapRoles, WhatNoMaterialShowsIsSaid) {
     return maps;
   };
   const std::vector<MapRole> traced = {MapRole::kAlbedo, MapRole::kNormal};
-  EXPECT_THAT(exporting::notesOfRoles(named({"BaseColor", "Normal_OpenGL"}), traced), testing::IsEmpty());
-  EXPECT_THAT(exporting::notesOfRoles(named({"albedo", "diffuse", "gloss", "AO"}), traced),
+  EXPECT_THAT(mesh::notesOfRoles(named({"BaseColor", "Normal_OpenGL"}), traced), testing::IsEmpty());
+  EXPECT_THAT(mesh::notesOfRoles(named({"albedo", "diffuse", "gloss", "AO"}), traced),
               testing::ElementsAre(HasSubstr("diffuse: not in the material, where albedo is the albedo"),
                                    HasSubstr("gloss: not in the material"), HasSubstr("AO: not in the material")));
-  EXPECT_THAT(exporting::notesOfRoles(named({"skin"}), traced),
+  EXPECT_THAT(mesh::notesOfRoles(named({"skin"}), traced),
               testing::ElementsAre(HasSubstr("skin: not in"), HasSubstr("the face is gray")));
 }
 

@@ -27,6 +27,16 @@ TEST(ErrorDistribution, GivesMeanRootMeanSquareAndMax) {
   EXPECT_EQ(errors.max(), 5.0);
 }
 
+TEST(ErrorDistribution, CountsWhatIsBeyondALimit) {
+  ErrorDistribution errors;
+  errors.add(std::vector<float>{7.99f, 8.0f, 31.0f, 32.0f, 1000.0f});
+  EXPECT_EQ(errors.beyond(0), 5u);
+  EXPECT_EQ(errors.beyond(8), 4u);
+  EXPECT_EQ(errors.beyond(32), 2u);
+  EXPECT_EQ(errors.beyond(256), 1u);
+  EXPECT_EQ(ErrorDistribution().beyond(8), 0u);
+}
+
 TEST(ErrorDistribution, QuantileIsTheUpperEdgeOfItsBin) {
   ErrorDistribution errors;
   std::vector<float> values;

@@ -1,4 +1,4 @@
-#include "export/gltf_scene.hpp"
+#include "mesh/gltf_scene.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,15 +7,15 @@
 #include <algorithm>
 #include <fstream>
 
-#include "export/gltf_buffer.hpp"
-#include "export/gltf_tangents.hpp"
 #include "facezip/error.hpp"
+#include "mesh/gltf_buffer.hpp"
+#include "mesh/gltf_tangents.hpp"
 #include "small_capture.hpp"
 #include "temporary_directory.hpp"
 
 namespace facezip {
 namespace {
-using exporting::GltfScene;
+using mesh::GltfScene;
 using testing::ElementsAre;
 
 /// Two triangles of a square; the diagonal is a UV seam. Vertex 4 belongs to no triangle.
@@ -61,7 +61,7 @@ tinygltf::Model load(const std::filesystem::path& file) {
 }
 
 TEST(SplitVertices, SplitsAtSeamsAndDropsWhatIsNotUsed) {
-  const exporting::SplitVertices split = exporting::splitVertices(seamedSquare());
+  const mesh::SplitVertices split = mesh::splitVertices(seamedSquare());
   EXPECT_THAT(split.positions, ElementsAre(0, 0, 1, 2, 2, 3));
   EXPECT_THAT(split.uvs, ElementsAre(0, 3, 1, 2, 4, 5));
   EXPECT_THAT(split.corners, ElementsAre(0, 2, 3, 1, 4, 5));
@@ -69,7 +69,7 @@ TEST(SplitVertices, SplitsAtSeamsAndDropsWhatIsNotUsed) {
 
 TEST(VertexNormals, AreOfUnitLengthEvenWithoutTriangles) {
   const geometry::TriangleMesh mesh = seamedSquare();
-  const Eigen::MatrixX3d normals = exporting::vertexNormals(mesh.positions, mesh.triangles);
+  const Eigen::MatrixX3d normals = mesh::vertexNormals(mesh.positions, mesh.triangles);
   for (Eigen::Index v = 0; v < 5; ++v) EXPECT_EQ(normals.row(v), Eigen::RowVector3d(0, 0, 1)) << v;
 }
 
@@ -80,7 +80,7 @@ TEST(WriteGltf, GivesBackMeshTargetsAndExtras) {
     // A loader looks for the files that are referred to.
     std::filesystem::create_directories(directory.path() / "albedo");
     std::ofstream(directory.path() / "albedo/neutral.png") << "png";
-    exporting::writeGltf(file, squareScene());
+    mesh::writeGltf(file, squareScene());
     const tinygltf::Model model = load(file);
     ASSERT_EQ(model.meshes.size(), 1u) << name;
     const tinygltf::Primitive& primitive = model.meshes[0].primitives.at(0);
@@ -106,16 +106,16 @@ TEST(WriteGltf, RecentresWhatFloatsWouldRoundOff) {
   const test::TemporaryDirectory directory;
   GltfScene near = squareScene(), far = near;
   const Eigen::RowVector3d place(300.0, 4'500'000.0, -70.0);
-  EXPECT_TRUE(exporting::recentre(near).isZero(0.0));
+  EXPECT_TRUE(mesh::recentre(near).isZero(0.0));
   far.neutral.positions.rowwise() += place;
-  for (exporting::MorphTarget& target : far.targets) target.positions.rowwise() += place;
-  const Eigen::RowVector3d origin = exporting::recentre(far);
+  for (mesh::MorphTarget& target : far.targets) target.positions.rowwise() += place;
+  const Eigen::RowVector3d origin = mesh::recentre(far);
   EXPECT_LT((origin - place).norm(), 100.0);
-  exporting::writeGltf(directory.path() / "near.glb", near);
-  exporting::writeGltf(directory.path() / "far.glb", far);
+  mesh::writeGltf(directory.path() / "near.glb", near);
+  mesh::writeGltf(directory.path() / "far.glb", far);
   const tinygltf::Model expected = load(directory.path() / "near.glb"), found = load(directory.path() / "far.glb");
   const auto floats = [](const tinygltf::Model& model, const std::map<std::string, int>& attributes) {
-    return exporting::readFloats(model, attributes.at("POSITION"));
+    return mesh::readFloats(model, attributes.at("POSITION"));
   };
   const std::vector<float> at_rest = floats(expected, expected.meshes[0].primitives[0].attributes);
   const std::vector<float> moved = floats(found, found.meshes[0].primitives[0].attributes);
@@ -143,16 +143,16 @@ TEST(AddTangents, FollowUvsAndTargets) {
     scene.targets = {{"bent", bent}, {"still", scene.neutral.positions}};
     scene.base_colour_texture.clear();
     scene.metres_per_unit = 1.0;
-    exporting::writeGltf(directory.path() / "a.glb", scene);
+    mesh::writeGltf(directory.path() / "a.glb", scene);
     tinygltf::Model model = load(directory.path() / "a.glb");
     EXPECT_FALSE(model.meshes[0].primitives[0].attributes.contains("TANGENT"));
-    exporting::addTangents(model);
+    mesh::addTangents(model);
     const tinygltf::Primitive& primitive = model.meshes[0].primitives[0];
-    const std::vector<float> normals = exporting::readFloats(model, primitive.attributes.at("NORMAL"));
-    const std::vector<float> tangents = exporting::readFloats(model, primitive.attributes.at("TANGENT"));
-    const std::vector<float> turned = exporting::readFloats(model, primitive.targets[0].at("NORMAL"));
-    const std::vector<float> changes = exporting::readFloats(model, primitive.targets[0].at("TANGENT"));
-    const std::vector<float> none = exporting::readFloats(model, primitive.targets[1].at("TANGENT"));
+    const std::vector<float> normals = mesh::readFloats(model, primitive.attributes.at("NORMAL"));
+    const std::vector<float> tangents = mesh::readFloats(model, primitive.attributes.at("TANGENT"));
+    const std::vector<float> turned = mesh::readFloats(model, primitive.targets[0].at("NORMAL"));
+    const std::vector<float> changes = mesh::readFloats(model, primitive.targets[0].at("TANGENT"));
+    const std::vector<float> none = mesh::readFloats(model, primitive.targets[1].at("TANGENT"));
     EXPECT_EQ(std::ranges::count(none, 0.0f), static_cast<std::ptrdiff_t>(none.size()));
     ASSERT_EQ(tangents.size(), 4u * 81);
     for (std::size_t v = 0; v < 81; ++v) {
@@ -174,7 +174,7 @@ TEST(WriteGltf, RefusesATargetOfAnotherTopology) {
   GltfScene scene = squareScene();
   scene.targets[1].positions.conservativeResize(4, 3);
   try {
-    exporting::writeGltf(directory.path() / "square.glb", scene);
+    mesh::writeGltf(directory.path() / "square.glb", scene);
     FAIL() << "expected InputError";
   } catch (const InputError& error) {
     EXPECT_EQ(error.parts().item, "still");
@@ -183,7 +183,7 @@ TEST(WriteGltf, RefusesATargetOfAnotherTopology) {
 }
 
 TEST(WriteGltf, SaysWhenItCannotWrite) {
-  EXPECT_THROW(exporting::writeGltf("/nonexistent/folder/square.glb", squareScene()), OutputError);
+  EXPECT_THROW(mesh::writeGltf("/nonexistent/folder/square.glb", squareScene()), OutputError);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "compress/codes/map_codes.hpp"
+#include "codes/map_codes.hpp"
 
 #include <gtest/gtest.h>
 

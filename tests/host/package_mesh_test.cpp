@@ -9,9 +9,9 @@
 #include <limits>
 #include <ostream>
 
-#include "export/gltf_scene.hpp"
 #include "file_contents.hpp"
 #include "mesh/glb.hpp"
+#include "mesh/gltf_scene.hpp"
 #include "small_capture.hpp"
 #include "temporary_directory.hpp"
 
@@ -23,13 +23,13 @@ using testing::HasSubstr;
 /// A mesh as facezip writes it: 25 vertices, two targets, one of which moves one vertex.
 std::string goodFile() {
   const test::TemporaryDirectory folder;
-  exporting::GltfScene scene;
+  mesh::GltfScene scene;
   scene.name = "face";
   scene.neutral = test::gridMesh(5);
   Eigen::MatrixX3d raised = scene.neutral.positions;
   raised(7, 2) += 0.01;
   scene.targets = {{"smile", raised}, {"turned", scene.neutral.positions * 1.1}};
-  exporting::writeGltf(folder / "mesh.glb", scene);
+  mesh::writeGltf(folder / "mesh.glb", scene);
   return test::contentsOf(folder / "mesh.glb");
 }
 

@@ -1,4 +1,4 @@
-#include "compress/search/permutation_search.hpp"
+#include "search/permutation_search.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <numeric>
 #include <random>
 
-#include "compress/search/texture_assignment.hpp"
 #include "reference/permutation_search.hpp"
+#include "search/texture_assignment.hpp"
 #include "tolerances.hpp"
 
 namespace facezip::compress {

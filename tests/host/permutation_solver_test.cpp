@@ -1,4 +1,4 @@
-#include "compress/search/permutation_solver.hpp"
+#include "search/permutation_solver.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
-#include "compress/search/branch_and_bound.hpp"
-#include "compress/search/cycle_relaxation.hpp"
-#include "compress/search/group_minimum.hpp"
 #include "reference/permutation_search.hpp"
+#include "search/branch_and_bound.hpp"
+#include "search/cycle_relaxation.hpp"
+#include "search/group_minimum.hpp"
 #include "tolerances.hpp"
 
 namespace facezip::compress {

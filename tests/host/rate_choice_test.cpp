@@ -1,9 +1,10 @@
-#include "compress/rate/rate_choice.hpp"
+#include "rate/rate_choice.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "facezip/compress.hpp"
@@ -22,6 +23,7 @@ using compress::chooseRate;
 using compress::efficientPoints;
 using compress::kRounding;
 using compress::rateCurve;
+using compress::RateFormats;
 using compress::RateMap;
 using test::Kind;
 using test::noise;
@@ -30,9 +32,11 @@ using test::writeCapture;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
+const std::vector<RateFormats> kImages = {{}};
+
 /// A map whose best C components leave (8 - C) / 8 of the energy at the first scale and as much more at each other.
 RateMap evenMap(std::size_t scales) {
-  RateMap map{1000, 1, 1.0, 6000.0, 16.0, {}};
+  RateMap map{100, 10, 1, 1, 1.0, 6000.0, 16.0, {}};
   for (std::size_t s = 0; s < scales; ++s) {
     map.left.emplace_back();
     for (int c = 0; c <= 8; ++c) map.left.back().push_back((8.0 - c) / 8.0 * (1.0 + 0.1 * static_cast<double>(s)));
@@ -44,7 +48,7 @@ TEST(RateCurve, HasEveryNumberOfTexturesAtEveryScale) {
   const std::vector<RateMap> maps = {evenMap(2)};
   const std::vector<int> scales = {4, 8};
   const std::vector<std::uint64_t> cells = {100, 25};
-  const std::vector<RatePoint> curve = rateCurve(maps, scales, cells, 6);
+  const std::vector<RatePoint> curve = rateCurve(maps, scales, cells, 6, kImages);
   ASSERT_EQ(curve.size(), 16u);
   for (const RatePoint& point : curve) {
     const auto s = static_cast<std::size_t>(point.weight_scale == 8);
@@ -59,12 +63,12 @@ TEST(RateCurve, PoolsMapsByWeightAndSize) {
   // Of map b there is a quarter of the samples, which count three times: 3/7 of the mean.
   RateMap a = evenMap(1);
   RateMap b = evenMap(1);
-  b.samples = 250;
+  b.width = 25;
   b.covered_samples = 1500.0;
   b.metric_weight = 3.0;
   b.mean_square = 100.0;
   const auto pooled = [](const RateMap& x, const RateMap& y) {
-    return rateCurve(std::vector<RateMap>{x, y}, std::vector<int>{4}, std::vector<std::uint64_t>{100}, 6)[3];
+    return rateCurve(std::vector<RateMap>{x, y}, std::vector<int>{4}, std::vector<std::uint64_t>{100}, 6, kImages)[3];
   };
   const double left = 0.5 + kRounding;
   EXPECT_NEAR(pooled(a, b).rmse, std::sqrt(left * (4.0 / 7.0 * 16.0 + 3.0 / 7.0 * 100.0)), 1e-12);
@@ -77,16 +81,16 @@ TEST(RateCurve, PoolsMapsByWeightAndSize) {
 }
 
 TEST(RateCurve, MapsThatShareWeightsLeaveWhatIsLeftOfBoth) {
-  RateMap map{100, 1, 1.0, 100.0, 4.0, {{1.0, 0.0, 0, 0, 0, 0, 0, 0, 0}}};
+  RateMap map{10, 10, 1, 1, 1.0, 100.0, 4.0, {{1.0, 0.0, 0, 0, 0, 0, 0, 0, 0}}};
   RateMap other = map;
   other.metric_weight = 3.0;
   const std::vector<RateMap> maps = {map, other};
   const std::vector<int> scales = {8};
   const std::vector<std::uint64_t> cells = {10};
   const std::vector<std::vector<double>> left = {{1.0, 0.25, 0, 0, 0, 0, 0, 0, 0}};
-  EXPECT_NEAR(compress::rateCurve(maps, scales, cells, 1)[0].rmse, std::sqrt(4.0 * compress::kRounding), 1e-9);
-  EXPECT_NEAR(compress::rateCurve(maps, scales, cells, 1, left)[0].rmse, std::sqrt(4.0 * (0.25 + compress::kRounding)),
-              1e-9);
+  EXPECT_NEAR(compress::rateCurve(maps, scales, cells, 1, kImages)[0].rmse, std::sqrt(4.0 * compress::kRounding), 1e-9);
+  EXPECT_NEAR(compress::rateCurve(maps, scales, cells, 1, kImages, left)[0].rmse,
+              std::sqrt(4.0 * (0.25 + compress::kRounding)), 1e-9);
 }
 
 TEST(RateCurve, PreciseMapsHaveCodesOf16BitsToo) {
@@ -94,7 +98,7 @@ TEST(RateCurve, PreciseMapsHaveCodesOf16BitsToo) {
   map.sample_bytes = 2;
   const RateMap coarse = evenMap(1);
   const std::vector<RatePoint> curve =
-      rateCurve(std::vector<RateMap>{map, coarse}, std::vector<int>{4}, std::vector<std::uint64_t>{100}, 6);
+      rateCurve(std::vector<RateMap>{map, coarse}, std::vector<int>{4}, std::vector<std::uint64_t>{100}, 6, kImages);
   ASSERT_EQ(curve.size(), 16u);
   EXPECT_EQ(curve[14].code_bits, 8);
   EXPECT_EQ(curve[15].code_bits, 16);
@@ -104,7 +108,42 @@ TEST(RateCurve, PreciseMapsHaveCodesOf16BitsToo) {
   EXPECT_NEAR(curve[15].rmse, std::sqrt(16.0 * kRounding * (1.0 + 1.0 / (257.0 * 257.0)) / 2.0), 1e-12);
 }
 
-RatePoint point(std::uint64_t bytes, double rmse) { return {1, 8, 8, bytes, rmse}; }
+// 100 x 10 texels of three channels are 25 x 3 blocks of 4 x 4; those of one channel become BC4's.
+TEST(RateCurve, BlocksTakeTheirBytesAndAddTheirNoise) {
+  RateMap colour = evenMap(1);
+  colour.channels = 3;
+  RateMap precise = evenMap(1);
+  precise.sample_bytes = 2;
+  precise.metric_weight = 0.0;
+  const std::vector<RateFormats> formats = {{}, {BlockFormat::kBc7, BlockFormat::kBc1}};
+  const auto curveOf = [&](const std::vector<RateMap>& maps) {
+    return rateCurve(maps, std::vector<int>{4}, std::vector<std::uint64_t>{100}, 6, formats);
+  };
+  const RatePoint in_colour = curveOf({colour})[8 + 2];
+  EXPECT_EQ(in_colour.texture_format, BlockFormat::kBc7);
+  EXPECT_EQ(in_colour.difference_format, BlockFormat::kBc1);
+  EXPECT_EQ(in_colour.bytes, 75u * 16 + 3 * 75 * 8 + 100 * 6 * 3);
+  const double noise = compress::codingNoise(BlockFormat::kBc1);
+  EXPECT_NEAR(in_colour.rmse, std::sqrt(16.0 * (5.0 / 8.0 + kRounding + 3.0 * noise)), 1e-12);
+  EXPECT_EQ(curveOf({evenMap(1)})[8 + 2].bytes, 75u * 8 + 3 * 75 * 8 + 100 * 6 * 3) << "BC4";
+
+  const RatePoint kept = curveOf({colour, precise})[16 + 4];
+  EXPECT_EQ(kept.code_bits, 8);
+  EXPECT_EQ(kept.bytes, in_colour.bytes + 1000 * (2 + 3)) << "maps of more than 8 bits stay images";
+  EXPECT_NEAR(kept.rmse, in_colour.rmse, 1e-12);
+}
+
+TEST(CodingNoise, FallsWithTheBitsOfATexel) {
+  EXPECT_LT(compress::codingNoise(BlockFormat::kBc7), compress::codingNoise(BlockFormat::kBc1));
+  double last = 0.0;
+  for (const BlockFormat format : {BlockFormat::kAstc4x4, BlockFormat::kAstc5x5, BlockFormat::kAstc6x6,
+                                   BlockFormat::kAstc8x8, BlockFormat::kAstc10x10, BlockFormat::kAstc12x12}) {
+    EXPECT_GT(compress::codingNoise(format), last);
+    last = compress::codingNoise(format);
+  }
+}
+
+RatePoint point(std::uint64_t bytes, double rmse) { return {1, 8, 8, std::nullopt, std::nullopt, bytes, rmse}; }
 
 TEST(EfficientPoints, AreBeatenByNoOther) {
   EXPECT_THAT(efficientPoints({point(50, 2.0), point(10, 9.0), point(40, 2.0), point(20, 9.0), point(40, 3.0),
@@ -323,6 +362,43 @@ TEST_F(Choosing, PreciseMapsKeepTheBudget) {
   report = run(target(0.01));
   EXPECT_EQ(report.rate->code_bits, 16);
   EXPECT_LE(pooledRmse(), 0.01);
+}
+
+// What was chosen is what was written, to the byte, and a larger budget errs less.
+TEST_F(Choosing, ABudgetChoosesAmongFormats) {
+  writeCapture(folder_ / "c", {"wrinkles", 6, 96, 96, image::SampleType::kUint8, wrinkles});
+  double last = std::numeric_limits<double>::infinity();
+  for (const std::uint64_t bytes : {6000, 12000, 40000}) {
+    CompressOptions options = budget(bytes);
+    options.format_choice = {BlockFormat::kAstc4x4, BlockFormat::kAstc6x6, BlockFormat::kAstc12x12};
+    const CompressReport report = run(options);
+    ASSERT_TRUE(report.rate && report.rate->difference_format);
+    EXPECT_EQ(package().bytesInMemory(), report.rate->bytes);
+    EXPECT_LE(report.rate->bytes, bytes);
+    EXPECT_EQ(package().maps()[0].differences.front().format, report.rate->difference_format);
+    EXPECT_LT(*report.pooled_rmse, last);
+    last = *report.pooled_rmse;
+  }
+}
+
+TEST_F(Choosing, ATargetInBlocksIsMet) {
+  writeCapture(folder_ / "c", {"wrinkles", 6, 96, 96, image::SampleType::kUint8, wrinkles});
+  CompressOptions options = target(3.0);
+  options.texture_format = BlockFormat::kBc7;
+  const CompressReport report = run(options);
+  EXPECT_EQ(report.rate->texture_format, BlockFormat::kBc7);
+  EXPECT_LE(*report.pooled_rmse, 3.0);
+  EXPECT_NEAR(*report.pooled_rmse, pooledRmse(), 1e-3);
+}
+
+TEST_F(Choosing, FormatsToChooseFromWantABudgetOrTarget) {
+  writeCapture(folder_ / "c", {"wrinkles", 2, 48, 48, image::SampleType::kUint8, wrinkles});
+  CompressOptions options;
+  options.format_choice = {BlockFormat::kBc7, BlockFormat::kBc1};
+  EXPECT_THAT(failure(options), HasSubstr("--budget or --target-rmse beside it"));
+  options.budget_bytes = 1 << 20;
+  options.texture_format = BlockFormat::kBc7;
+  EXPECT_THAT(failure(options), HasSubstr("one format where there is one for differences"));
 }
 
 TEST_F(Choosing, WhatCannotBeReachedIsRefused) {

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <string>
 
-#include "compress/codes/map_codes.hpp"
-#include "compress/refine/grid_weights.hpp"
+#include "codes/map_codes.hpp"
 #include "facezip/compress.hpp"
 #include "facezip/evaluate.hpp"
 #include "facezip/package.hpp"
 #include "facezip/reconstruct.hpp"
 #include "kind_capture.hpp"
+#include "refine/grid_weights.hpp"
 #include "temporary_directory.hpp"
 #include "test_device.hpp"
 
@@ -215,19 +215,20 @@ TEST(GridWeights, ClampAFewFarValues) {
   rows[(55 * 2 + 0) * space.lanes() + 3] = 1000.0f;
   weights.store(0, 10, rows);
   std::vector<std::uint8_t> used(100, 1);
-  const compress::EncodedWeights exact = weights.encode(used, 0.0);
+  const compress::EncodedWeights exact = weights.encode(used, {});
   EXPECT_NEAR(exact.scale[0], 1000.0 / 255.0, 1e-6);
-  const compress::EncodedWeights clamped = weights.encode(used, 0.001);
+  const compress::EncodedWeights clamped = weights.encode(used, {0.001, 1000.0f});
   EXPECT_EQ(clamped.offset[0], 0.0);
   EXPECT_NEAR(clamped.scale[0], 1.0 / 255.0, 1e-6);
   EXPECT_EQ(clamped.scale[1], 0.0);
   EXPECT_EQ(clamped.offset[1], -0.5);
+  EXPECT_NEAR(weights.encode(used, {0.001, 100.0f}).scale[0], 900.0 / 255.0, 1e-6) << "by no more than 100";
   std::vector<float> decoded(rows.size());
   compress::decodeRows(clamped, space, 0, 10, decoded);
   for (std::size_t i = 0; i < rows.size(); ++i) ASSERT_NEAR(decoded[i], std::min(rows[i], 1.0f), 0.5f / 255.0f + 1e-3f);
   used.assign(100, 1);
   used[55] = 0;
-  EXPECT_NEAR(weights.encode(used, 0.0).scale[0], 1.0 / 255.0, 1e-6) << "unused cells do not stretch the range";
+  EXPECT_NEAR(weights.encode(used, {}).scale[0], 1.0 / 255.0, 1e-6) << "unused cells do not stretch the range";
 }
 
 TEST(CodeBits, GoByTheErrorThatTheyAdd) {

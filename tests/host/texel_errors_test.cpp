@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compress/bands/covered_texels.hpp"
+#include "bands/covered_texels.hpp"
 #include "small_capture.hpp"
 
 namespace facezip {

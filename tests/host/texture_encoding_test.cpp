@@ -1,4 +1,4 @@
-#include "compress/codes/texture_encoding.hpp"
+#include "refine/texture_encoding.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // Difference textures in blocks, one after the other: what the blocks hold, what is left, and that each mends what
 // those before it got wrong.
-#include "compress/codes/coded_textures.hpp"
+#include "codes/coded_textures.hpp"
 
 #include <gtest/gtest.h>
 
 #include "blocks/block_decoder.hpp"
-#include "compress/codes/block_weights.hpp"
-#include "compress/codes/tile_rows.hpp"
+#include "codes/block_weights.hpp"
+#include "codes/tile_rows.hpp"
 #include "device/strided_copy.hpp"
 #include "problems/difference_fit.hpp"
 #include "test_device.hpp"

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compress/search/permutation_search.hpp"
-#include "compress/search/texture_assignment.hpp"
+#include "search/permutation_search.hpp"
+#include "search/texture_assignment.hpp"
 #include "search_capture.hpp"
 #include "test_device.hpp"
 #include "tolerances.hpp"

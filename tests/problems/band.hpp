@@ -5,8 +5,8 @@
 #include <cstring>
 #include <vector>
 
-#include "compress/bands/device_tiles.hpp"
-#include "compress/bands/difference.hpp"
+#include "bands/device_tiles.hpp"
+#include "bands/difference.hpp"
 #include "problems/guarded_buffer.hpp"
 #include "problems/masks.hpp"
 #include "reference/difference.hpp"

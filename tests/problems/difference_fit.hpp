@@ -1,10 +1,10 @@
 // difference_fit.hpp - problem of the step `difference_fit`.
 #pragma once
 
-#include "compress/refine/difference_fit.hpp"
 #include "problems/grid.hpp"
 #include "reference/difference_fit.hpp"
 #include "reference/weight_system.hpp"
+#include "refine/difference_fit.hpp"
 
 namespace facezip::test {
 

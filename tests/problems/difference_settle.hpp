@@ -1,8 +1,8 @@
 // difference_settle.hpp - problem of the step `difference_settle`.
 #pragma once
 
-#include "compress/refine/difference_settle.hpp"
 #include "problems/difference_target.hpp"
+#include "refine/difference_settle.hpp"
 
 namespace facezip::test {
 

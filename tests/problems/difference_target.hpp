@@ -1,9 +1,9 @@
 // difference_target.hpp - problem of the step `difference_target`.
 #pragma once
 
-#include "compress/refine/difference_target.hpp"
 #include "problems/difference_fit.hpp"
 #include "reference/difference_target.hpp"
+#include "refine/difference_target.hpp"
 
 namespace facezip::test {
 

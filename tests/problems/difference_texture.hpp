@@ -1,9 +1,9 @@
 // difference_texture.hpp - problem of the step `difference_texture`.
 #pragma once
 
-#include "compress/search/difference_texture.hpp"
 #include "problems/band.hpp"
 #include "reference/difference_texture.hpp"
+#include "search/difference_texture.hpp"
 
 namespace facezip::test {
 

@@ -1,7 +1,7 @@
 // difference_texture_encode.hpp - problem of the step `difference_texture_encode`.
 #pragma once
 
-#include "compress/codes/difference_texture_encode.hpp"
+#include "codes/difference_texture_encode.hpp"
 #include "problems/difference_texture.hpp"
 #include "reference/difference_texture_encode.hpp"
 

@@ -1,9 +1,9 @@
 // difference_texture_range.hpp - problem of the step `difference_texture_range`.
 #pragma once
 
-#include "compress/codes/difference_texture_range.hpp"
 #include "problems/difference_texture.hpp"
 #include "reference/difference_texture_range.hpp"
+#include "refine/difference_texture_range.hpp"
 
 namespace facezip::test {
 

@@ -1,9 +1,9 @@
 // gram.hpp - problem of the step `gram`.
 #pragma once
 
-#include "compress/search/gram.hpp"
 #include "problems/band.hpp"
 #include "reference/gram.hpp"
+#include "search/gram.hpp"
 
 namespace facezip::test {
 

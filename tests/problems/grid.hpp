@@ -6,10 +6,10 @@
 #include <ostream>
 #include <vector>
 
-#include "compress/refine/grid_band.hpp"
-#include "compress/refine/weight_window.hpp"
 #include "problems/band.hpp"
 #include "reference/weight_grid.hpp"
+#include "refine/grid_band.hpp"
+#include "refine/weight_window.hpp"
 
 namespace facezip::test {
 

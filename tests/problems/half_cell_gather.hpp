@@ -1,9 +1,9 @@
 // half_cell_gather.hpp - problem of the step `half_cell_gather`.
 #pragma once
 
-#include "compress/refine/weight_system.hpp"
 #include "problems/half_cell_fit.hpp"
 #include "reference/half_cell_gather.hpp"
+#include "refine/weight_system.hpp"
 
 namespace facezip::test {
 

@@ -1,9 +1,9 @@
 // half_cell_gram.hpp - problem of the step `half_cell_gram`.
 #pragma once
 
-#include "compress/refine/half_cells.hpp"
 #include "problems/grid.hpp"
 #include "reference/half_cell_gram.hpp"
+#include "refine/half_cells.hpp"
 
 namespace facezip::test {
 

@@ -3,9 +3,9 @@
 
 #include <optional>
 
-#include "compress/search/kmeans.hpp"
 #include "problems/guarded_buffer.hpp"
 #include "reference/kmeans.hpp"
+#include "search/kmeans.hpp"
 #include "search_capture.hpp"
 
 namespace facezip::test {

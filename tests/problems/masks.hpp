@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "compress/bands/tile_band.hpp"
-#include "compress/search/gram_matrices.hpp"
+#include "bands/tile_band.hpp"
 #include "problems/hashed.hpp"
+#include "search/gram_matrices.hpp"
 
 namespace facezip::test {
 

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
-#include "compress/search/seam_cost.hpp"
 #include "problems/guarded_buffer.hpp"
 #include "problems/hashed.hpp"
 #include "reference/seam_cost.hpp"
+#include "search/seam_cost.hpp"
 #include "search_capture.hpp"
 
 namespace facezip::test {

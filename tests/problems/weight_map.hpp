@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "compress/search/weight_map.hpp"
 #include "problems/guarded_buffer.hpp"
 #include "problems/hashed.hpp"
 #include "reference/weight_map.hpp"
+#include "search/weight_map.hpp"
 
 namespace facezip::test {
 

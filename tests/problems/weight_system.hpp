@@ -1,8 +1,8 @@
 // weight_system.hpp - problem of the step `weight_system`: the sums of every tile.
 #pragma once
 
-#include "compress/refine/weight_system.hpp"
 #include "problems/difference_fit.hpp"
+#include "refine/weight_system.hpp"
 
 namespace facezip::test {
 

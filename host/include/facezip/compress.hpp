@@ -31,6 +31,8 @@ struct CompressOptions {
   std::optional<BlockFormat> texture_format;
   /// Of the difference textures, where it is to be another.
   std::optional<BlockFormat> difference_format;
+  /// With a target or budget, instead of the two above: block formats to choose from, for all textures of 8 bits.
+  std::vector<BlockFormat> format_choice;
   /// Weight maps that each set will have beside those of the expressions: a budget counts them too.
   int further_weight_maps = 0;
   /// A set of weights for every map, instead of one that all share.
@@ -60,11 +62,13 @@ struct CompressOptions {
 
 /// A number of difference textures and a weight scale, with what they cost.
 struct RatePoint {
-  int differences = 0;      ///< C
-  int weight_scale = 0;     ///< texels of the largest map per weight cell, per axis
-  int code_bits = 8;        ///< of the difference textures of maps of 16 bits or floats, 8 or 16; others have 8
-  std::uint64_t bytes = 0;  ///< run-time memory, as Package::bytesInMemory() counts it
-  double rmse = 0.0;        ///< estimate, in 1/255, pooled over the maps by their metric weights
+  int differences = 0;   ///< C
+  int weight_scale = 0;  ///< texels of the largest map per weight cell, per axis
+  int code_bits = 8;     ///< of the difference textures of maps of 16 bits or floats, 8 or 16; others have 8
+  std::optional<BlockFormat> texture_format;     ///< of neutrals of maps of 8 bits; none: images
+  std::optional<BlockFormat> difference_format;  ///< of their difference textures
+  std::uint64_t bytes = 0;                       ///< run-time memory, as Package::bytesInMemory() counts it
+  double rmse = 0.0;                             ///< estimate, in 1/255, pooled over the maps by their metric weights
 
   bool operator==(const RatePoint&) const = default;
 };

@@ -1,6 +1,7 @@
 // evaluate.hpp - how far a package is from the capture it was made of, beside baselines of the same kind.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -68,6 +69,8 @@ struct TexelErrors {
   double psnr = 0.0;  ///< 20 log10(255 / rmse) dB; infinite when rmse is 0
   double p99 = 0.0;   ///< 99 of 100 texels have no larger error; rounded up to 1/64
   double max = 0.0;
+  std::array<std::uint64_t, 3> beyond = {};  ///< texels that are off by kNoticed levels or more
+  static constexpr std::array<int, 3> kNoticed = {8, 16, 32};
 };
 
 /// Angles between captured and decoded normals, degrees in [0, 180].

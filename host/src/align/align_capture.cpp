@@ -5,8 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "align/texture_slide.hpp"
-#include "compress/face.hpp"
-#include "compress/stage_clock.hpp"
+#include "face/face.hpp"
 #include "facezip/alignment.hpp"
 #include "facezip/error.hpp"
 #include "facezip/geometry/obj_io.hpp"
@@ -15,6 +14,7 @@
 #include "image/set_sample.hpp"
 #include "io/counts.hpp"
 #include "io/read_file.hpp"
+#include "io/stage_clock.hpp"
 #include "io/staged_directory.hpp"
 #include "register/resample.hpp"
 
@@ -176,7 +176,7 @@ ProtectedPaths inputsOf(const Capture& capture, const AlignmentOptions& options)
 
 AlignmentReport alignCapture(const Capture& capture, const fs::path& output, const AlignmentOptions& options,
                              const Device& device, Progress& progress) {
-  compress::StageClock clock;
+  io::StageClock clock;
   inputsOf(capture, options).requireApartFromFolder(output);
   const CaptureMap& guide = guideOf(capture, options.map);
   io::StagedDirectory staged(output, {kManifest, "\"generator\": \"facezip align\"", everyFile}, &progress);

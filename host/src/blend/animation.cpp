@@ -14,8 +14,8 @@
 #include "facezip/blend.hpp"
 #include "facezip/nearest_names.hpp"
 #include "io/counts.hpp"
+#include "io/quoted.hpp"
 #include "io/read_file.hpp"
-#include "package/package_json.hpp"
 
 namespace facezip {
 namespace {
@@ -61,8 +61,8 @@ Header parseHeader(const std::string& line, std::size_t line_number, const std::
       const std::string& name = header.names[column];
       throw InputError({file.string(), fieldItem(line_number, column), "each expression once",
                         name == header.names[*earlier]
-                            ? package::quoted(name) + " twice"
-                            : package::quoted(header.names[*earlier]) + " and " + package::quoted(name),
+                            ? io::quoted(name) + " twice"
+                            : io::quoted(header.names[*earlier]) + " and " + io::quoted(name),
                         ""});
     }
     header.drives.push_back(matches[column].drives);
@@ -72,9 +72,9 @@ Header parseHeader(const std::string& line, std::size_t line_number, const std::
   if (any) return header;
   const auto named = std::ranges::find_if_not(header.names, blend::isNoShape);
   const std::string name = named == header.names.end() ? "" : *named;
-  throw InputError({file.string(), lineItem(line_number), "names of expressions of the package", package::quoted(line),
-                    fmt::format("the nearest to {} is {}", package::quoted(name),
-                                nearestNames(name, package.expressions(), 1).front())});
+  throw InputError(
+      {file.string(), lineItem(line_number), "names of expressions of the package", io::quoted(line),
+       fmt::format("the nearest to {} is {}", io::quoted(name), nearestNames(name, package.expressions(), 1).front())});
 }
 
 /// Says which columns nothing comes of: a misspelt name would otherwise go unnoticed.
@@ -87,7 +87,7 @@ void noteSkipped(const Header& header, const std::filesystem::path& file, const 
   }
   if (skipped.empty()) return;
   const std::size_t listed = std::min(skipped.size(), kMostListed);
-  for (std::size_t i = 0; i < listed; ++i) shown.push_back(package::quoted(skipped[i]));
+  for (std::size_t i = 0; i < listed; ++i) shown.push_back(io::quoted(skipped[i]));
   std::string text =
       fmt::format("{}: columns skipped, since no expression is called so: {}", file.string(), fmt::join(shown, ", "));
   if (listed < skipped.size()) text += fmt::format(" and {} more", skipped.size() - listed);
@@ -125,8 +125,8 @@ void appendFrame(const std::string& line, std::size_t line_number, const std::fi
     const std::optional<float> weight = blend::parseNumber(fields[column]);
     if (!weight || std::abs(*weight) > kLargestWeight) {
       throw InputError({file.string(), fieldItem(line_number, column),
-                        fmt::format("a number of at most {:g} either way", kLargestWeight),
-                        package::quoted(fields[column]), ""});
+                        fmt::format("a number of at most {:g} either way", kLargestWeight), io::quoted(fields[column]),
+                        ""});
     }
     for (const blend::Drive& drive : header.drives[column]) {
       clip.weights[frame + drive.expression] += drive.share * *weight;

@@ -9,11 +9,11 @@
 #include "image/image_file.hpp"
 #include "io/composed.hpp"
 #include "io/counts.hpp"
+#include "io/json_field.hpp"
+#include "io/quoted.hpp"
 #include "io/read_file.hpp"
 #include "package/guides.hpp"
-#include "package/json_field.hpp"
 #include "package/package_files.hpp"
-#include "package/package_json.hpp"
 
 namespace facezip {
 namespace fs = std::filesystem;
@@ -23,27 +23,27 @@ constexpr double kLargestGain = 16.0;
 constexpr const char* kCure = "is this a preset of gains, as `facezip view` saves it?";
 constexpr std::uintmax_t kLargestFile = 16u << 20;
 
-void requirePresetOf(const package::JsonField& document, const Package& package, const fs::path& file) {
+void requirePresetOf(const io::JsonField& document, const Package& package, const fs::path& file) {
   for (const char* field : {"format", "version", "package"}) {
     if (!document.has(field)) throw InputError({file.string(), field, "", "no such field", kCure});
   }
-  const package::JsonField format = document["format"];
+  const io::JsonField format = document["format"];
   if (format.text() != "facezip-gains") format.fail("\"facezip-gains\"", format.got(), kCure);
   document["version"].integer(1, 1);
-  const package::JsonField name = document["package"];
+  const io::JsonField name = document["package"];
   if (name.text() != package.name()) {
-    name.fail(fmt::format("{}, the package's name", package::quoted(package.name())), name.got(),
+    name.fail(fmt::format("{}, the package's name", io::quoted(package.name())), name.got(),
               "gains belong to the package they were tuned on: make the preset with this one");
   }
 }
 
 /// Sets the gains of the names that `field` holds.
-void readFactors(const package::JsonField& field, const std::vector<std::string>& names, const char* what,
+void readFactors(const io::JsonField& field, const std::vector<std::string>& names, const char* what,
                  std::vector<float>& gains) {
   for (const auto& [name, value] : field.object().items()) {
     const auto found = std::ranges::find(names, io::composed(name));
     if (found == names.end()) {
-      field.fail(fmt::format("{}s of the package ({})", what, fmt::join(names, ", ")), package::quoted(name));
+      field.fail(fmt::format("{}s of the package ({})", what, fmt::join(names, ", ")), io::quoted(name));
     }
     gains[toSize(found - names.begin())] = static_cast<float>(field[name].number(0.0, kLargestGain));
   }
@@ -117,8 +117,8 @@ void applyRegions(const Package& package, Gain& gain) {
 
 Gain readGain(const fs::path& file, const Package& package) {
   const nlohmann::json json =
-      package::parseJson(io::readFile(file, "a preset that `facezip view` saved", "", kLargestFile), file.string());
-  const package::JsonField document(json, file.string(), "");
+      io::parseJson(io::readFile(file, "a preset that `facezip view` saved", "", kLargestFile), file.string());
+  const io::JsonField document(json, file.string(), "");
   requirePresetOf(document, package, file);
   Gain gain = unitGain(package);
   if (document.has("expressions")) {

@@ -13,13 +13,13 @@
 #include "facezip/blend.hpp"
 #include "facezip/nearest_names.hpp"
 #include "io/counts.hpp"
-#include "package/package_json.hpp"
+#include "io/quoted.hpp"
 
 namespace facezip {
 namespace blend {
 
 void refuseUnknown(const Package& package, const std::string& name, const std::string& item) {
-  throw InputError({package.directory().string(), item, "an expression of the package", package::quoted(name),
+  throw InputError({package.directory().string(), item, "an expression of the package", io::quoted(name),
                     fmt::format("the nearest are {}", fmt::join(nearestNames(name, package.expressions()), ", "))});
 }
 
@@ -73,9 +73,8 @@ std::vector<float> weightsByName(const Package& package, const std::vector<std::
     const float weight = weights[g].second;
     if (const auto earlier = matches[g].repeats) {
       throw InputError({"", "weights", "each expression once",
-                        given[g] == given[*earlier]
-                            ? package::quoted(given[g]) + " twice"
-                            : package::quoted(given[*earlier]) + " and " + package::quoted(given[g]),
+                        given[g] == given[*earlier] ? io::quoted(given[g]) + " twice"
+                                                    : io::quoted(given[*earlier]) + " and " + io::quoted(given[g]),
                         ""});
     }
     if (matches[g].drives.empty()) blend::refuseUnknown(package, given[g], "weights");
@@ -100,7 +99,7 @@ std::vector<std::pair<std::string, float>> parseWeights(std::string_view text) {
     const std::optional<float> weight =
         equals == std::string_view::npos ? std::nullopt : blend::parseNumber(part.substr(equals + 1));
     if (name.empty() || !weight) {
-      throw InputError({"", "weights", "NAME=NUMBER, separated by commas", package::quoted(std::string(part)), ""});
+      throw InputError({"", "weights", "NAME=NUMBER, separated by commas", io::quoted(std::string(part)), ""});
     }
     weights.emplace_back(name, *weight);
     begin = end + 1;

@@ -58,6 +58,12 @@ std::size_t blockBytes(BlockFormat format, int width, int height) {
          static_cast<std::size_t>(blockCount(height, info.block_height)) * static_cast<std::size_t>(info.block_bytes);
 }
 
+BlockFormat formatFor(BlockFormat wanted, int channels) {
+  if (wanted != BlockFormat::kBc1 && wanted != BlockFormat::kBc7) return wanted;
+  if (channels <= 2) return channels == 1 ? BlockFormat::kBc4 : BlockFormat::kBc5;
+  return channels == 4 ? BlockFormat::kBc7 : wanted;
+}
+
 void requireChannels(BlockFormat format, int channels) {
   const BlockFormatInfo& info = infoOf(format);
   if (channels >= 1 && channels <= info.max_channels) return;

@@ -42,6 +42,10 @@ bool isAstc(BlockFormat format);
 int blockCount(int texels, int block_side);
 std::size_t blockBytes(BlockFormat format, int width, int height);
 
+/// The format in which a map of so many channels gets what was asked for: BC4 and BC5 have one and two channels, which
+/// BC1 and BC7 would waste bits beside; BC1 has no fourth.
+BlockFormat formatFor(BlockFormat wanted, int channels);
+
 /// Throws InputError when a texture of so many channels cannot be stored in the format.
 void requireChannels(BlockFormat format, int channels);
 

@@ -14,8 +14,8 @@
 #include "facezip/geometry/obj_io.hpp"
 #include "facezip/input_file.hpp"
 #include "io/composed.hpp"
-#include "package/package_json.hpp"
-#include "package/safe_names.hpp"
+#include "io/quoted.hpp"
+#include "io/safe_names.hpp"
 
 namespace facezip {
 namespace fs = std::filesystem;
@@ -32,7 +32,7 @@ void requireUnique(const std::vector<std::string>& names, const fs::path& file) 
 
 /// Refuses here what the package would refuse when all the work is done.
 void requireName(const std::string& name, const char* item, const fs::path& file, const std::string& further = "") {
-  const auto fault = package::nameFault(name, further);
+  const auto fault = io::nameFault(name, further);
   if (fault) throw InputError({file.string(), item, fault->expected, fault->got, "rename it"});
 }
 
@@ -102,8 +102,8 @@ std::optional<fs::path> optionalFile(const fs::path& directory, const std::strin
 std::string nameOf(const fs::path& directory) {
   const fs::path path = fs::absolute(directory).lexically_normal();  // "face/" ends in an empty name
   const std::string name = io::composed((path.has_filename() ? path : path.parent_path()).filename().string());
-  if (!package::isUtf8(name)) {
-    throw InputError({directory.string(), "name", "a name in UTF-8", package::quoted(name),
+  if (!io::isUtf8(name)) {
+    throw InputError({directory.string(), "name", "a name in UTF-8", io::quoted(name),
                       "rename the directory, or name the capture in capture.json"});
   }
   return name.empty() ? "capture" : name;
@@ -117,7 +117,7 @@ void requireKnownExpressions(const std::string& map, const CaptureJson& descript
   for (const auto& [name, file] : described->second.expressions) {
     if (name == "neutral" || std::ranges::find(expressions, name) != expressions.end()) continue;
     throw InputError({(directory / kCaptureFile).string(), fmt::format("maps.{}.expressions", map),
-                      "expressions of the capture", package::quoted(name), ""});
+                      "expressions of the capture", io::quoted(name), ""});
   }
 }
 
@@ -154,8 +154,8 @@ Capture openCapture(const fs::path& directory, const std::vector<std::string>& m
   for (const std::string& name : chosen) capture.maps.push_back(makeMap(name, used, capture.expressions));
   for (const auto& [name, file] : description.expression_meshes) {
     if (std::ranges::find(capture.expressions, name) != capture.expressions.end()) continue;
-    throw InputError({(directory / kCaptureFile).string(), "expression_meshes", "expressions of the capture",
-                      package::quoted(name), ""});
+    throw InputError(
+        {(directory / kCaptureFile).string(), "expression_meshes", "expressions of the capture", io::quoted(name), ""});
   }
   capture.expression_meshes = findExpressionMeshes(directory, description, capture.expressions, progress);
   capture.face_region = optionalFile(directory, description.face_region, "face_region.txt");

@@ -1,15 +1,16 @@
 #include "capture/capture_json.hpp"
 
 #include "facezip/error.hpp"
+#include "image/map_fields.hpp"
 #include "io/composed.hpp"
+#include "io/json_field.hpp"
+#include "io/quoted.hpp"
 #include "io/read_file.hpp"
-#include "package/json_field.hpp"
-#include "package/package_json.hpp"
 
 namespace facezip {
 namespace fs = std::filesystem;
 namespace {
-using package::JsonField;
+using io::JsonField;
 
 constexpr const char* kCure = "see docs/capture_format.md";
 
@@ -25,7 +26,7 @@ auto byName(const JsonField& object, const Read& read) {
   for (const auto& member : object.object().items()) {
     const JsonField field = object[member.key()];
     if (found.emplace(io::composed(member.key()), read(field)).second) continue;
-    object.fail("each name once", package::quoted(member.key()) + " twice", kCure);
+    object.fail("each name once", io::quoted(member.key()) + " twice", kCure);
   }
   return found;
 }
@@ -36,8 +37,8 @@ std::map<std::string, std::string> filesByExpression(const JsonField& object) {
 
 CaptureJson::Map readMap(const JsonField& field) {
   CaptureJson::Map map;
-  if (field.has("colour_space")) map.colour_space = package::parseColourSpace(field["colour_space"]);
-  if (field.has("weight")) map.weight = package::parseMetricWeight(field["weight"]);
+  if (field.has("colour_space")) map.colour_space = image::parseColourSpace(field["colour_space"]);
+  if (field.has("weight")) map.weight = image::parseMetricWeight(field["weight"]);
   map.folder = optionalText(field, "folder");
   map.neutral = optionalText(field, "neutral");
   if (field.has("expressions")) map.expressions = filesByExpression(field["expressions"]);
@@ -50,8 +51,7 @@ std::optional<CaptureJson> readCaptureJson(const fs::path& file) {
   std::error_code error;
   // A link that leads nowhere is something, and an error.
   if (fs::symlink_status(file, error).type() == fs::file_type::not_found) return std::nullopt;
-  const nlohmann::json json =
-      package::parseJson(io::readFile(file, "the description of a capture"), file.string(), kCure);
+  const nlohmann::json json = io::parseJson(io::readFile(file, "the description of a capture"), file.string(), kCure);
   const JsonField root(json, file.string(), "", kCure);
   CaptureJson description;
   description.name = io::composed(optionalText(root, "name"));
@@ -63,7 +63,7 @@ std::optional<CaptureJson> readCaptureJson(const fs::path& file) {
   description.coverage = optionalText(root, "coverage");
   description.importance = optionalText(root, "importance");
   if (root.has("expressions")) {
-    for (const JsonField& name : root["expressions"].elements(0, package::kMaxExpressions)) {
+    for (const JsonField& name : root["expressions"].elements(0, image::kMaxExpressions)) {
       description.expressions.push_back(io::composed(name.text()));
     }
   }

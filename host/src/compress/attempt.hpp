@@ -5,12 +5,12 @@
 #include <optional>
 #include <vector>
 
-#include "compress/face_model.hpp"
 #include "compress/gram_stage.hpp"
 #include "compress/memory_plan.hpp"
 #include "compress/package_form.hpp"
-#include "compress/run.hpp"
 #include "compress/search_stage.hpp"
+#include "device/run.hpp"
+#include "face/face_model.hpp"
 #include "raster/texel_masks.hpp"
 
 namespace facezip::compress {
@@ -24,7 +24,7 @@ struct CompressionJob {
   const raster::TexelMasks& masks;
   const GramStage& grams;
   const MemoryPlan& memory;
-  const Run& run;
+  const device::Run& run;
 };
 
 struct Attempt {

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "compress/bands/map_bands.hpp"
-#include "compress/refine/refinement.hpp"
-#include "compress/refine/weight_system.hpp"
+#include "bands/map_bands.hpp"
+#include "refine/refinement.hpp"
+#include "refine/weight_system.hpp"
 
 namespace facezip::compress {
 namespace {

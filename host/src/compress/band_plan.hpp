@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <span>
 
-#include "compress/bands/map_set.hpp"
-#include "compress/bands/tile_band.hpp"
-#include "compress/refine/weight_window.hpp"
+#include "bands/map_set.hpp"
+#include "bands/tile_band.hpp"
 #include "facezip/device.hpp"
+#include "refine/weight_window.hpp"
 
 namespace facezip::compress {
 

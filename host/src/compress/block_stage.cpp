@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "compress/codes/coded_refinement.hpp"
+#include "blocks/block_format.hpp"
+#include "codes/coded_refinement.hpp"
 
 namespace facezip::compress {
 namespace {
@@ -13,7 +14,7 @@ constexpr int kTurns = 3;
 }  // namespace
 
 std::vector<std::optional<CodedNeutral>> codeNeutrals(const PackageForm& form, std::span<const GridMap> group,
-                                                      const Run& run) {
+                                                      const device::Run& run) {
   std::vector<std::optional<CodedNeutral>> neutrals;
   for (const GridMap& map : group) {
     std::optional<CodedNeutral>& neutral = neutrals.emplace_back();
@@ -23,7 +24,7 @@ std::vector<std::optional<CodedNeutral>> codeNeutrals(const PackageForm& form, s
                                     map.map->source->name, image::sampleTypeName(shape.type)));
       continue;
     }
-    neutral = codeNeutral(run.context, *map.map, formatFor(form.blocks->neutral, shape.channels),
+    neutral = codeNeutral(run.context, *map.map, blocks::formatFor(form.blocks->neutral, shape.channels),
                           blocks::Quality::kNormal, run.progress);
   }
   run.clock.book("coding neutrals");
@@ -31,7 +32,7 @@ std::vector<std::optional<CodedNeutral>> codeNeutrals(const PackageForm& form, s
 }
 
 EncodedWeights fitWeightsToBlocks(const FitProblem& problem, const PackageForm& form, const FittedWeights& fitted,
-                                  const CoveredFace& face, const Run& run) {
+                                  const CoveredFace& face, const device::Run& run) {
   const std::vector<MapCodes> codes = codesOf(form, problem.space, problem.maps, fitted, face);
   std::vector<CodedMap> maps;
   for (std::size_t m = 0; m < problem.maps.size(); ++m) {

@@ -14,10 +14,10 @@ namespace facezip::compress {
 /// Of every map of a group: its neutral in blocks of the form's; none for maps that are kept as images, because blocks
 /// would round away what they have more than 8 bits for.
 std::vector<std::optional<CodedNeutral>> codeNeutrals(const PackageForm& form, std::span<const GridMap> group,
-                                                      const Run& run);
+                                                      const device::Run& run);
 
 /// Weights that suit what the blocks decode to. fitted  with its neutrals
 EncodedWeights fitWeightsToBlocks(const FitProblem& problem, const PackageForm& form, const FittedWeights& fitted,
-                                  const CoveredFace& face, const Run& run);
+                                  const CoveredFace& face, const device::Run& run);
 
 }  // namespace facezip::compress

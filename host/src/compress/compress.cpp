@@ -14,9 +14,9 @@
 #include "compress/compress_stretch.hpp"
 #include "compress/face_guides.hpp"
 #include "compress/open_textures.hpp"
-#include "compress/rate/rate_search.hpp"
 #include "io/staged_directory.hpp"
 #include "package/footprint.hpp"
+#include "rate/rate_search.hpp"
 
 namespace facezip {
 namespace {
@@ -38,7 +38,9 @@ std::uint64_t diskBytes(const fs::path& directory) {
 }
 
 PackageForm formOf(const RatePoint& point) {
-  return {point.differences, point.weight_scale, point.code_bits, std::nullopt};
+  PackageForm form{point.differences, point.weight_scale, point.code_bits, std::nullopt};
+  if (point.texture_format) form.blocks = TextureFormats{*point.texture_format, *point.difference_format};
+  return form;
 }
 
 PackageForm formOf(const CompressOptions& options) {
@@ -65,7 +67,7 @@ void requireMemory(const CompressOptions& options, const MemoryPlan& memory, con
 }
 
 /// A change that the sample of a map's texels missed altogether leaves nothing to estimate by: all of them are shown.
-void lookAgain(RateEstimate& estimate, const MapSet& maps, int band_rows, const Run& run) {
+void lookAgain(RateEstimate& estimate, const MapSet& maps, int band_rows, const device::Run& run) {
   BandBuffers buffers(run.context);
   for (std::size_t m = 0; m < maps.maps.size(); ++m) {
     if (!estimate.sawNothing(m)) continue;
@@ -85,7 +87,7 @@ void requireFormats(const PackageForm& form, const MapSet& maps) {
     if (shape.type != SampleType::kUint8) continue;
     for (const BlockFormat format : {form.blocks->neutral, form.blocks->differences}) {
       try {
-        blocks::requireChannels(formatFor(format, shape.channels), shape.channels);
+        blocks::requireChannels(blocks::formatFor(format, shape.channels), shape.channels);
       } catch (const InputError& error) {
         InputError::Parts parts = error.parts();
         parts.item = "map " + map.source->name;
@@ -104,8 +106,8 @@ Attempt makePackages(const CompressionJob& job, RateSearch* rates, io::StagedDir
     Attempt attempt = makePackage(job, formOf(point), staged.path());
     const double reached = pooledRmse(job, attempt);
     if (!rates->misses(reached)) return attempt;
-    job.run.progress.note(fmt::format("{} differences with weights at 1/{} reach {:.3f}, not {:.3f}: trying more",
-                                      point.differences, point.weight_scale, reached, *job.options.target_rmse));
+    job.run.progress.note(fmt::format("{} reach{} {:.3f}, not {:.3f}: trying more", describe(point),
+                                      point.differences == 1 ? "es" : "", reached, *job.options.target_rmse));
     staged.clear();  // the next may have fewer textures
   }
 }
@@ -128,8 +130,8 @@ CompressReport compressCapture(const Capture& capture, const fs::path& package, 
                                const Device& device, Progress& progress) {
   requireSaneOptions(options);
   inputsOf(capture, options).requireApartFromFolder(package);
-  StageClock clock;
-  const Run run{device.context(), progress, clock, options.memory_bytes};
+  io::StageClock clock;
+  const device::Run run{device.context(), progress, clock, options.memory_bytes};
   io::StagedDirectory staged(package, package::footprint(), &progress);
   OpenTextures textures = openTextures(capture, staged.path(), run);
   MapSet& maps = textures.maps;
@@ -143,6 +145,10 @@ CompressReport compressCapture(const Capture& capture, const fs::path& package, 
   std::optional<RateSearch> rates = searchRates(options, maps, weight_sets);
   const PackageForm first_form = rates ? formOf(rates->smallest()) : formOf(options);
   requireFormats(first_form, maps);
+  for (const BlockFormat format : options.format_choice) {
+    requireFormats({first_form.differences, first_form.weight_scale, std::nullopt, TextureFormats{format, format}},
+                   maps);
+  }
   const auto groups = groupMaps(maps, options.weights_per_map, first_form.weight_scale);
   const MemoryPlan memory(maps, slots, static_cast<int>(weight_sets), run);
   requireMemory(options, memory, first_form, groups);

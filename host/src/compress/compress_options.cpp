@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "facezip/error.hpp"
-#include "package/package_json.hpp"
-#include "package/safe_names.hpp"
+#include "io/quoted.hpp"
+#include "io/safe_names.hpp"
 
 namespace facezip::compress {
 
@@ -29,14 +29,16 @@ void requireSaneOptions(const CompressOptions& options) {
   require(options.mask_cutoff >= 0.0 && options.mask_cutoff < 1.0, "--mask-cutoff", "0 or more and below 1",
           fmt::format("{}", options.mask_cutoff));
   require(!options.masks || *options.masks >= 1, "--masks", "at least 1", fmt::format("{}", options.masks.value_or(0)));
-  require(!chooses || !options.texture_format, "--texture-format",
-          "png with a target or budget, which estimate images; choose --differences and --weight-scale for blocks",
-          options.texture_format ? std::string(blockFormatName(*options.texture_format)) : "");
+  const std::string several = fmt::format("{} formats to choose from", options.format_choice.size());
+  require(options.format_choice.empty() || chooses, "--texture-format",
+          "one format, or --budget or --target-rmse beside it to choose one by", several);
+  require(options.format_choice.empty() || !(options.texture_format || options.difference_format), "--texture-format",
+          "one format where there is one for differences, too", several);
   require(!options.difference_format || options.texture_format, "--difference-format",
           "a block --texture-format beside it", "png");
   // They are recorded as JSON.
-  require(package::isUtf8(options.region), "--region", "a name in UTF-8", package::quoted(options.region));
-  require(package::isUtf8(options.importance), "--importance", "a name in UTF-8", package::quoted(options.importance));
+  require(io::isUtf8(options.region), "--region", "a name in UTF-8", io::quoted(options.region));
+  require(io::isUtf8(options.importance), "--importance", "a name in UTF-8", io::quoted(options.importance));
   constexpr int kWidestGutter = 1024;  // the default of the largest textures
   require(!options.gutter || (*options.gutter >= 0 && *options.gutter <= kWidestGutter), "--gutter", "0 to 1024",
           fmt::format("{}", options.gutter.value_or(0)));

@@ -3,8 +3,8 @@
 
 #include "compress/attempt.hpp"
 #include "compress/open_textures.hpp"
-#include "compress/rate/rate_search.hpp"
 #include "facezip/compress.hpp"
+#include "rate/rate_search.hpp"
 
 namespace facezip::compress {
 

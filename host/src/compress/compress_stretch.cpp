@@ -7,12 +7,12 @@
 #include <limits>
 #include <numeric>
 
-#include "compress/bands/difference.hpp"
-#include "compress/refine/difference_fit.hpp"
-#include "compress/refine/refinement.hpp"
+#include "bands/difference.hpp"
 #include "facezip/geometry/skin_strain.hpp"
 #include "io/counts.hpp"
 #include "raster/cell_samples.hpp"
+#include "refine/difference_fit.hpp"
+#include "refine/refinement.hpp"
 
 namespace facezip::compress {
 namespace {

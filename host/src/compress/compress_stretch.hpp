@@ -7,12 +7,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "compress/refine/difference_fit.hpp"
-#include "compress/refine/grid_weights.hpp"
 #include "compress/texture_source.hpp"
 #include "facezip/geometry/mesh.hpp"
 #include "io/counts.hpp"
 #include "raster/uv_raster.hpp"
+#include "refine/difference_fit.hpp"
+#include "refine/grid_weights.hpp"
 
 namespace facezip::compress {
 

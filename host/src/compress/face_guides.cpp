@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "export/gltf_scene.hpp"
 #include "facezip/geometry/float_origin.hpp"
+#include "mesh/gltf_scene.hpp"
 #include "package/guides.hpp"
 #include "package/package_json.hpp"
 
@@ -113,7 +113,7 @@ MaskGuides makeMaskGuides(const Face& face, const FaceMasks& masks, const raster
 
 void writeFaceMesh(const Capture& capture, const Face& face, std::optional<geometry::LengthUnit> unit,
                    const std::vector<Eigen::MatrixX3f>& expressions, const std::filesystem::path& directory) {
-  exporting::GltfScene scene;
+  mesh::GltfScene scene;
   scene.name = capture.name.empty() ? "face" : capture.name;
   scene.neutral = face.mesh;
   // In floats, as the expressions are: what does not move is then exactly 0.
@@ -124,7 +124,7 @@ void writeFaceMesh(const Capture& capture, const Face& face, std::optional<geome
     if (expressions[n].rows() == 0) continue;
     scene.targets.push_back({capture.expressions[n], expressions[n].cast<double>()});
   }
-  exporting::writeGltf(directory / package::kMeshFile, scene);
+  mesh::writeGltf(directory / package::kMeshFile, scene);
 }
 
 }  // namespace facezip::compress

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "compress/face.hpp"
+#include "face/face.hpp"
 #include "facezip/package.hpp"
 #include "image/image_file.hpp"
 #include "raster/grid_masks.hpp"

@@ -1,6 +1,6 @@
 #include "compress/fit_choice.hpp"
 
-#include "compress/refine/refinement.hpp"
+#include "refine/refinement.hpp"
 
 namespace facezip::compress {
 namespace {
@@ -43,7 +43,7 @@ double estimateWritten(const FitProblem& problem, const PackageForm& form, const
 }  // namespace
 
 FittedWeights chooseFit(const FitProblem& problem, const PackageForm& form, const CoveredFace& face, int band_rows,
-                        const Run& run) {
+                        const device::Run& run) {
   // As many textures as expressions: the start is exact already.
   const bool exact = problem.space.expressions <= problem.space.textures;
   FittedWeights refined = fitWeights(problem, exact ? 0 : RefinementOptions{}.most_sweeps, run);

@@ -10,6 +10,6 @@ namespace facezip::compress {
 /// Fits weights. Rounding can make them worse than the paper's with textures that suit those, but only where the
 /// paper's are exact or nearly so: where that may be, both are measured as they would be written.
 FittedWeights chooseFit(const FitProblem& problem, const PackageForm& form, const CoveredFace& face, int band_rows,
-                        const Run& run);
+                        const device::Run& run);
 
 }  // namespace facezip::compress

@@ -4,14 +4,14 @@
 
 #include <algorithm>
 
-#include "compress/codes/difference_texture_range.hpp"
-#include "compress/refine/refinement.hpp"
+#include "refine/difference_texture_range.hpp"
+#include "refine/refinement.hpp"
 
 namespace facezip::compress {
 namespace {
 
-/// Share of the weights at either end that may be clamped when they become bytes.
-constexpr double kClippedWeights = 2e-4;
+/// When weights become bytes: one in 5,000 may be clamped, by half a texture at most.
+constexpr Clipping kWeightClipping{2e-4, 0.5f};
 
 }  // namespace
 
@@ -28,10 +28,10 @@ MakeMapTiles weighedTiles(const FitProblem& problem) {
 }
 
 EncodedWeights encodeFitted(const GridWeights& weights, const FitProblem& problem) {
-  return weights.encode(problem.covered, kClippedWeights);
+  return weights.encode(problem.covered, kWeightClipping);
 }
 
-FittedWeights fitWeights(const FitProblem& problem, int most_sweeps, const Run& run) {
+FittedWeights fitWeights(const FitProblem& problem, int most_sweeps, const device::Run& run) {
   RefinementOptions options;
   options.most_sweeps = most_sweeps;
   const RefinementProblem refinement{problem.space,         problem.start,       problem.maps,
@@ -47,7 +47,7 @@ FittedWeights fitWeights(const FitProblem& problem, int most_sweeps, const Run& 
 }
 
 FittedWeights keepWeights(const EncodedWeights& weights, std::span<const GridMap> maps, int differences,
-                          TextureSource& textures, int band_rows, const Run& run) {
+                          TextureSource& textures, int band_rows, const device::Run& run) {
   FittedWeights kept;
   kept.weights = weights;
   BandBuffers buffers(run.context);

@@ -6,14 +6,14 @@
 #include <span>
 #include <vector>
 
-#include "compress/bands/map_set.hpp"
-#include "compress/codes/coded_neutral.hpp"
-#include "compress/codes/texture_encoding.hpp"
-#include "compress/importance.hpp"
-#include "compress/refine/grid_weights.hpp"
-#include "compress/refine/map_window.hpp"
-#include "compress/run.hpp"
+#include "bands/map_set.hpp"
+#include "codes/coded_neutral.hpp"
 #include "compress/texture_source.hpp"
+#include "device/run.hpp"
+#include "face/importance.hpp"
+#include "refine/grid_weights.hpp"
+#include "refine/map_window.hpp"
+#include "refine/texture_encoding.hpp"
 
 namespace facezip::compress {
 
@@ -43,7 +43,7 @@ struct FitProblem {
 /// Weights and difference textures fitted in turn.
 /// most_sweeps  0: the start's weights, and the textures that suit them
 /// Throws DeviceError, InputError, Cancelled.
-FittedWeights fitWeights(const FitProblem& problem, int most_sweeps, const Run& run);
+FittedWeights fitWeights(const FitProblem& problem, int most_sweeps, const device::Run& run);
 
 /// Mean energy of an expression's differences on a covered cell: what smoothness and trust are measured by.
 double cellEnergy(const FitProblem& problem);
@@ -57,6 +57,6 @@ EncodedWeights encodeFitted(const GridWeights& weights, const FitProblem& proble
 /// The weights as they are, with textures that follow from them (the paper's method): a pass finds how far those reach.
 /// textures  of the maps' weights
 FittedWeights keepWeights(const EncodedWeights& weights, std::span<const GridMap> maps, int differences,
-                          TextureSource& textures, int band_rows, const Run& run);
+                          TextureSource& textures, int band_rows, const device::Run& run);
 
 }  // namespace facezip::compress

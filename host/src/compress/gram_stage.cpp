@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "compress/search/gram.hpp"
+#include "search/gram.hpp"
 
 namespace facezip::compress {
 namespace {
@@ -17,7 +17,7 @@ std::uint64_t countCovered(const TileMasks& tiles) {
 
 GramStage accumulateGrams(const std::vector<std::vector<GridMap>>& groups, const raster::TexelMasks& masks,
                           const GramSlots& slots, const std::optional<Importance>& importance, int band_rows,
-                          const ObserveBand& observe, const Run& run) {
+                          const ObserveBand& observe, const device::Run& run) {
   GramStage stage;
   BandBuffers buffers(run.context);
   for (const std::vector<GridMap>& group : groups) {

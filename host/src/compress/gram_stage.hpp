@@ -5,12 +5,12 @@
 #include <functional>
 #include <vector>
 
-#include "compress/bands/map_bands.hpp"
-#include "compress/bands/map_set.hpp"
-#include "compress/face_model.hpp"
-#include "compress/run.hpp"
-#include "compress/search/gram_matrices.hpp"
+#include "bands/map_bands.hpp"
+#include "bands/map_set.hpp"
+#include "device/run.hpp"
+#include "face/face_model.hpp"
 #include "raster/texel_masks.hpp"
+#include "search/gram_matrices.hpp"
 
 namespace facezip::compress {
 
@@ -26,6 +26,6 @@ using ObserveBand = std::function<void(std::size_t index, const MapBand& band)>;
 /// importance  of texels; may be none
 GramStage accumulateGrams(const std::vector<std::vector<GridMap>>& groups, const raster::TexelMasks& masks,
                           const GramSlots& slots, const std::optional<Importance>& importance, int band_rows,
-                          const ObserveBand& observe, const Run& run);
+                          const ObserveBand& observe, const device::Run& run);
 
 }  // namespace facezip::compress

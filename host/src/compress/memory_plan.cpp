@@ -4,11 +4,11 @@
 #include <array>
 #include <set>
 
+#include "bands/map_bands.hpp"
 #include "blocks/block_format.hpp"
+#include "codes/coded_textures.hpp"
 #include "compress/band_plan.hpp"
-#include "compress/bands/map_bands.hpp"
-#include "compress/codes/coded_textures.hpp"
-#include "compress/refine/refinement.hpp"
+#include "refine/refinement.hpp"
 
 namespace facezip::compress {
 
@@ -28,7 +28,8 @@ std::uint64_t MemoryPlan::residentBytes(const PackageForm& form) const {
   for (const OpenMap& map : maps_.maps) {
     const image::ImageShape& shape = map.samples->shape();
     if (!form.blocks || shape.type != image::SampleType::kUint8) continue;
-    neutral_bytes += blocks::blockBytes(formatFor(form.blocks->neutral, shape.channels), shape.width, shape.height);
+    neutral_bytes +=
+        blocks::blockBytes(blocks::formatFor(form.blocks->neutral, shape.channels), shape.width, shape.height);
   }
   const auto weights = static_cast<std::uint64_t>(space.expressions) * static_cast<std::uint64_t>(space.textures);
   return class_bytes + neutral_bytes + slots_.bytes(space.expressions) * weight_sets_ +

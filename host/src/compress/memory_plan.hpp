@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <span>
 
-#include "compress/bands/map_set.hpp"
+#include "bands/map_set.hpp"
 #include "compress/package_form.hpp"
-#include "compress/run.hpp"
-#include "compress/search/gram_matrices.hpp"
+#include "device/run.hpp"
+#include "search/gram_matrices.hpp"
 
 namespace facezip::compress {
 
@@ -15,7 +15,7 @@ namespace facezip::compress {
 class MemoryPlan {
  public:
   /// weight_sets  of the package
-  MemoryPlan(const MapSet& maps, const GramSlots& slots, int weight_sets, const Run& run)
+  MemoryPlan(const MapSet& maps, const GramSlots& slots, int weight_sets, const device::Run& run)
       : maps_(maps), slots_(slots), weight_sets_(static_cast<std::uint64_t>(weight_sets)), run_(run) {}
 
   /// Rows of a band that all maps can have. Throws InputError where --memory is too little for the smallest band,
@@ -32,7 +32,7 @@ class MemoryPlan {
   const MapSet& maps_;
   const GramSlots& slots_;
   std::uint64_t weight_sets_;
-  const Run& run_;
+  const device::Run& run_;
 };
 
 }  // namespace facezip::compress

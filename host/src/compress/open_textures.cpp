@@ -9,7 +9,8 @@
 
 namespace facezip::compress {
 
-OpenTextures openTextures(const Capture& capture, const std::filesystem::path& scratch_directory, const Run& run) {
+OpenTextures openTextures(const Capture& capture, const std::filesystem::path& scratch_directory,
+                          const device::Run& run) {
   OpenTextures textures;
   textures.maps = openMaps(capture);
   std::uint64_t decoded_bytes = 0;

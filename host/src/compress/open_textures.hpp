@@ -5,8 +5,8 @@
 #include <string>
 #include <thread>
 
-#include "compress/bands/map_set.hpp"
-#include "compress/run.hpp"
+#include "bands/map_set.hpp"
+#include "device/run.hpp"
 #include "facezip/capture.hpp"
 
 namespace facezip::compress {
@@ -20,6 +20,7 @@ struct OpenTextures {
 /// Opens every texture. They are decoded once, into scratch files in `scratch_directory`, where its disk has room for
 /// them, and again in every pass where it has not.
 /// Throws InputError: a texture that does not fit its neutral.
-OpenTextures openTextures(const Capture& capture, const std::filesystem::path& scratch_directory, const Run& run);
+OpenTextures openTextures(const Capture& capture, const std::filesystem::path& scratch_directory,
+                          const device::Run& run);
 
 }  // namespace facezip::compress

@@ -9,10 +9,4 @@ WeightSpace weightSpace(const MapSet& maps, const PackageForm& form) {
   return {cells(shape.width), cells(shape.height), form.differences, largest.samples->expressions()};
 }
 
-BlockFormat formatFor(BlockFormat wanted, int channels) {
-  if (wanted != BlockFormat::kBc1 && wanted != BlockFormat::kBc7) return wanted;
-  if (channels <= 2) return channels == 1 ? BlockFormat::kBc4 : BlockFormat::kBc5;
-  return channels == 4 ? BlockFormat::kBc7 : wanted;
-}
-
 }  // namespace facezip::compress

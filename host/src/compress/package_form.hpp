@@ -3,9 +3,9 @@
 
 #include <optional>
 
-#include "compress/bands/map_set.hpp"
-#include "compress/refine/weight_window.hpp"
+#include "bands/map_set.hpp"
 #include "facezip/block_format.hpp"
+#include "refine/weight_window.hpp"
 
 namespace facezip::compress {
 
@@ -14,10 +14,6 @@ struct TextureFormats {
   BlockFormat neutral = BlockFormat::kBc7;
   BlockFormat differences = BlockFormat::kBc7;
 };
-
-/// The format in which a map of so many channels gets what was asked for: BC4 and BC5 have one and two channels, which
-/// BC1 and BC7 would waste bits beside; BC1 has no fourth.
-BlockFormat formatFor(BlockFormat wanted, int channels);
 
 struct PackageForm {
   int differences = 4;           ///< C

@@ -6,10 +6,10 @@
 #include <span>
 #include <utility>
 
+#include "bands/map_bands.hpp"
 #include "blocks/mipped_texture_writer.hpp"
-#include "compress/bands/map_bands.hpp"
-#include "compress/codes/block_weights.hpp"
-#include "compress/codes/difference_texture_encode.hpp"
+#include "codes/block_weights.hpp"
+#include "codes/difference_texture_encode.hpp"
 #include "facezip/package.hpp"
 #include "package/guides.hpp"
 #include "package/package_writer.hpp"
@@ -72,7 +72,7 @@ struct BandRows {
 
 /// The files are written while the device works on the band that follows.
 void writeMap(const MapSolution& solution, int index, int differences, int band_rows, BandBuffers& buffers,
-              package::PackageWriter& writer, const Run& run) {
+              package::PackageWriter& writer, const device::Run& run) {
   const OpenMap& map = *solution.map.map;
   TextureEncoder encoder(run.context, differences);
   BandRows at_device, at_files;
@@ -110,7 +110,7 @@ blocks::EncoderOptions mipOptions(BlockFormat format, int channels) {
 
 /// A map in blocks: neutral and difference textures, with their mip levels.
 void writeBlockMap(const MapSolution& solution, const PackageMap& described, const std::filesystem::path& directory,
-                   int band_rows, BandBuffers& buffers, const Run& run) {
+                   int band_rows, BandBuffers& buffers, const device::Run& run) {
   const OpenMap& map = *solution.map.map;
   const int width = described.width;
   const auto open = [&](const std::string& file, BlockFormat format) {
@@ -142,7 +142,7 @@ void writeBlockMap(const MapSolution& solution, const PackageMap& described, con
 }  // namespace
 
 void writePackageFiles(const PackageSolution& solution, const std::filesystem::path& directory, int band_rows,
-                       const Run& run) {
+                       const device::Run& run) {
   package::PackageWriter writer(describe(solution), directory);
   tbb::task_group weights;  // beside the maps
   for (std::size_t set = 0; set < solution.weights.size(); ++set) {

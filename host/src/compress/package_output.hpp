@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "compress/bands/map_set.hpp"
-#include "compress/codes/coded_neutral.hpp"
-#include "compress/codes/map_codes.hpp"
+#include "bands/map_set.hpp"
+#include "codes/coded_neutral.hpp"
+#include "codes/map_codes.hpp"
 #include "compress/face_guides.hpp"
-#include "compress/refine/grid_weights.hpp"
-#include "compress/run.hpp"
 #include "compress/texture_source.hpp"
+#include "device/run.hpp"
 #include "facezip/capture.hpp"
+#include "refine/grid_weights.hpp"
 
 namespace facezip::compress {
 
@@ -43,6 +43,6 @@ struct PackageSolution {
 /// Writes the files of the package into `directory`, in bands of so many rows.
 /// Throws OutputError, and what passes over the texels throw.
 void writePackageFiles(const PackageSolution& solution, const std::filesystem::path& directory, int band_rows,
-                       const Run& run);
+                       const device::Run& run);
 
 }  // namespace facezip::compress

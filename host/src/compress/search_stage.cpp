@@ -1,15 +1,15 @@
 #include "compress/search_stage.hpp"
 
 #include "compress/compress_stretch.hpp"
-#include "compress/search/kmeans.hpp"
-#include "compress/search/permutation_solver.hpp"
-#include "compress/search/seam_cost.hpp"
-#include "compress/search/texture_assignment.hpp"
+#include "search/kmeans.hpp"
+#include "search/permutation_solver.hpp"
+#include "search/seam_cost.hpp"
+#include "search/texture_assignment.hpp"
 
 namespace facezip::compress {
 namespace {
 
-Clustering cluster(const GramMatrices& grams, const CompressOptions& options, int differences, const Run& run) {
+Clustering cluster(const GramMatrices& grams, const CompressOptions& options, int differences, const device::Run& run) {
   run.progress.stage("clustering", 0);
   KmeansOptions kmeans;
   kmeans.clusters = differences;
@@ -26,7 +26,7 @@ struct FoundPermutation {
   PermutationRecord record;
 };
 
-FoundPermutation permute(const SeamTables& tables, const CompressOptions& options, const Run& run) {
+FoundPermutation permute(const SeamTables& tables, const CompressOptions& options, const device::Run& run) {
   if (options.method == Method::kNoPermutation) {
     FoundPermutation found{identityPermutation(tables), {}};
     found.record.cost = found.permutation.cost;
@@ -51,7 +51,7 @@ FoundPermutation permute(const SeamTables& tables, const CompressOptions& option
 
 /// Eq. 6 at every cell: weights are 0 or 1 between masks, so a byte holds them as they are.
 EncodedWeights layWeightMaps(const Clustering& clustering, const Permutation& permutation, const GramMatrices& grams,
-                             const CellMasks& cells, int differences, const Run& run) {
+                             const CellMasks& cells, int differences, const device::Run& run) {
   run.progress.stage("weight maps", 0);
   const std::vector<int> texture_of = textureOfExpression(clustering, permutation);
   WeightMapper mapper(run.context, texture_of, grams.slots.masks, grams.expressions, differences);
@@ -67,7 +67,7 @@ EncodedWeights layWeightMaps(const Clustering& clustering, const Permutation& pe
 }  // namespace
 
 SearchedWeights searchWeights(const GramMatrices& grams, const CellMasks& cells, const CompressOptions& options,
-                              int differences, const Run& run) {
+                              int differences, const device::Run& run) {
   const Clustering clustering = cluster(grams, options, differences, run);
   run.progress.stage("permutation", 0);
   const SeamTables tables = computeSeamTables(run.context, grams, clustering);
@@ -84,7 +84,7 @@ SearchedWeights searchWeights(const GramMatrices& grams, const CellMasks& cells,
 }
 
 SearchedWeights influenceWeights(const Capture& capture, const Face& face, const raster::UvRaster& raster,
-                                 int weight_scale, const Run& run) {
+                                 int weight_scale, const device::Run& run) {
   run.progress.stage("influences", 0);
   const std::vector<Eigen::MatrixX3d> meshes =
       readExpressionMeshes(capture, face.mesh, "its mesh, for its influence", run.progress);

@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "compress/face.hpp"
-#include "compress/refine/grid_weights.hpp"
-#include "compress/run.hpp"
-#include "compress/search/difference_texture.hpp"
-#include "compress/search/gram_matrices.hpp"
-#include "compress/search/weight_map.hpp"
+#include "device/run.hpp"
+#include "face/face.hpp"
 #include "facezip/compress.hpp"
 #include "raster/uv_raster.hpp"
+#include "refine/grid_weights.hpp"
+#include "search/difference_texture.hpp"
+#include "search/gram_matrices.hpp"
+#include "search/weight_map.hpp"
 
 namespace facezip::compress {
 
@@ -38,12 +38,12 @@ struct SearchedWeights {
 /// cells  masks at the cells of the weight grid
 /// Throws DeviceError, Cancelled.
 SearchedWeights searchWeights(const GramMatrices& grams, const CellMasks& cells, const CompressOptions& options,
-                              int differences, const Run& run);
+                              int differences, const device::Run& run);
 
 /// The weights of compress and stretch maps (Li et al. 2020, Eq. 10 to 12): they follow from the meshes alone.
 /// raster  of the largest map, with `weight_scale` texels to a cell
 /// Throws InputError: an expression without mesh.
 SearchedWeights influenceWeights(const Capture& capture, const Face& face, const raster::UvRaster& raster,
-                                 int weight_scale, const Run& run);
+                                 int weight_scale, const device::Run& run);
 
 }  // namespace facezip::compress

@@ -1,6 +1,6 @@
 #include "compress/texture_source.hpp"
 
-#include "compress/refine/refinement.hpp"
+#include "refine/refinement.hpp"
 
 namespace facezip::compress {
 namespace {

@@ -5,14 +5,14 @@
 #include <span>
 #include <vector>
 
-#include "compress/bands/map_bands.hpp"
-#include "compress/bands/map_set.hpp"
-#include "compress/codes/coded_textures.hpp"
-#include "compress/codes/map_codes.hpp"
-#include "compress/refine/difference_fit.hpp"
-#include "compress/refine/grid_weights.hpp"
-#include "compress/search/difference_texture.hpp"
+#include "bands/map_bands.hpp"
+#include "bands/map_set.hpp"
+#include "codes/coded_textures.hpp"
+#include "codes/map_codes.hpp"
 #include "raster/texel_masks.hpp"
+#include "refine/difference_fit.hpp"
+#include "refine/grid_weights.hpp"
+#include "search/difference_texture.hpp"
 
 namespace facezip::compress {
 

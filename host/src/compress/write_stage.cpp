@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "blocks/block_format.hpp"
 #include "compress/package_output.hpp"
 
 namespace facezip::compress {
@@ -29,7 +30,7 @@ std::vector<MapCodes> codesOf(const PackageForm& form, const WeightSpace& space,
   std::vector<MapCodes> codes;
   for (std::size_t m = 0; m < group.size(); ++m) {
     if (inBlocks(form, group[m])) {
-      const BlockFormat format = formatFor(form.blocks->differences, group[m].map->samples->shape().channels);
+      const BlockFormat format = blocks::formatFor(form.blocks->differences, group[m].map->samples->shape().channels);
       codes.push_back(codesOfBlocks(fitted.ranges[m], format, form.differences));
     } else {
       codes.push_back(codesOfBits(fitted.ranges[m], bitsOf(form, space, group[m], m, fitted, face)));
@@ -39,7 +40,7 @@ std::vector<MapCodes> codesOf(const PackageForm& form, const WeightSpace& space,
 }
 
 double writtenError(const PackageForm& form, const WeightSpace& space, std::span<const GridMap> group,
-                    const FittedWeights& fitted, const CoveredFace& face, int band_rows, const Run& run) {
+                    const FittedWeights& fitted, const CoveredFace& face, int band_rows, const device::Run& run) {
   const std::vector<MapCodes> codes = codesOf(form, space, group, fitted, face);
   BandBuffers buffers(run.context);
   double error = 0.0;
@@ -56,7 +57,7 @@ double writtenError(const PackageForm& form, const WeightSpace& space, std::span
 }
 
 std::vector<std::optional<double>> writePackage(const PackageContent& content, const std::filesystem::path& directory,
-                                                int band_rows, const Run& run) {
+                                                int band_rows, const device::Run& run) {
   PackageSolution solution{content.capture, content.form.differences, {}, {}, content.method_json, content.has_mesh,
                            content.guides};
   solution.maps.resize(content.face.texels.size());

@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "compress/codes/map_codes.hpp"
+#include "codes/map_codes.hpp"
 #include "compress/face_guides.hpp"
 #include "compress/fit_stage.hpp"
 #include "compress/package_form.hpp"
-#include "compress/run.hpp"
 #include "compress/texture_source.hpp"
+#include "device/run.hpp"
 
 namespace facezip::compress {
 
@@ -34,7 +34,7 @@ std::vector<MapCodes> codesOf(const PackageForm& form, const WeightSpace& space,
 
 /// Squared error of a group as it would be written, fit weights in it, in (1/255)^2. Takes a pass over its maps.
 double writtenError(const PackageForm& form, const WeightSpace& space, std::span<const GridMap> group,
-                    const FittedWeights& fitted, const CoveredFace& face, int band_rows, const Run& run);
+                    const FittedWeights& fitted, const CoveredFace& face, int band_rows, const device::Run& run);
 
 /// Textures that follow from the weights of a group as they are; none for those that are fitted.
 using DirectTextures = std::function<std::unique_ptr<TextureSource>(std::size_t group)>;
@@ -56,6 +56,6 @@ struct PackageContent {
 /// Writes the package into an empty directory. Returns for every map, where textures were fitted, their squared error
 /// over the covered texels as it is written, before frames are rounded, in (1/255)^2.
 std::vector<std::optional<double>> writePackage(const PackageContent& content, const std::filesystem::path& directory,
-                                                int band_rows, const Run& run);
+                                                int band_rows, const device::Run& run);
 
 }  // namespace facezip::compress

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "compress/bands/covered_texels.hpp"
-#include "compress/bands/map_bands.hpp"
+#include "bands/covered_texels.hpp"
+#include "bands/map_bands.hpp"
 #include "evaluate/baseline_packages.hpp"
 #include "evaluate/map_measurement.hpp"
 #include "raster/texel_masks.hpp"

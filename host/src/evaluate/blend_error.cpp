@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "compress/bands/covered_texels.hpp"
-#include "compress/search/counter_hash.hpp"
+#include "bands/covered_texels.hpp"
+#include "search/counter_hash.hpp"
 
 namespace facezip::evaluate {
 namespace {

@@ -21,7 +21,7 @@ Candidate compressed(const std::string& key, const CompressOptions& options, con
 }  // namespace
 
 Candidates makeCandidates(const Package& package, const Subject& subject, const EvaluateOptions& options,
-                          compress::StageClock& clock) {
+                          io::StageClock& clock) {
   Candidates candidates;
   candidates.own_keys = {nameOf(subject.recorded.method)};
   candidates.all.push_back(decoded("package", package, subject, subject.as_packed));

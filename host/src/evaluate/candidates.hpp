@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "compress/stage_clock.hpp"
 #include "evaluate/baseline_packages.hpp"
 #include "evaluate/package_decoder.hpp"
 #include "evaluate/subject.hpp"
 #include "facezip/evaluate.hpp"
+#include "io/stage_clock.hpp"
 
 namespace facezip::evaluate {
 
@@ -30,6 +30,6 @@ struct Candidates {
 /// Compresses what the options ask for beside the package, one after the other. package  outlives the result
 /// Throws what compressCapture() throws.
 Candidates makeCandidates(const Package& package, const Subject& subject, const EvaluateOptions& options,
-                          compress::StageClock& clock);
+                          io::StageClock& clock);
 
 }  // namespace facezip::evaluate

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
+
+#include "io/counts.hpp"
 
 namespace facezip::evaluate {
 
@@ -45,6 +48,11 @@ double ErrorDistribution::quantile(double share) const {
     if (static_cast<double>(below) >= wanted) return std::min(max_, static_cast<double>(b + 1) / kBinsPerUnit);
   }
   return max_;
+}
+
+std::uint64_t ErrorDistribution::beyond(int limit) const {
+  const auto first = std::min(toSize(limit, kBinsPerUnit), bins_.size());
+  return std::accumulate(bins_.begin() + static_cast<std::ptrdiff_t>(first), bins_.end(), std::uint64_t{0});
 }
 
 }  // namespace facezip::evaluate

@@ -25,6 +25,8 @@ class ErrorDistribution {
   /// The smallest bin edge that at least `share` of the values do not pass; at most max(), and max() above 256.
   /// share  in (0, 1]
   double quantile(double share) const;
+  /// How many values are `limit` or more. limit  0 to 256, a whole number
+  std::uint64_t beyond(int limit) const;
 
  private:
   std::uint64_t count_ = 0;

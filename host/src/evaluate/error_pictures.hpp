@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "compress/bands/tile_band.hpp"
+#include "bands/tile_band.hpp"
 #include "evaluate/error_distribution.hpp"
 #include "facezip/evaluate.hpp"
 

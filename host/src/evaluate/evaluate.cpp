@@ -3,13 +3,13 @@
 
 #include <algorithm>
 
-#include "compress/stage_clock.hpp"
 #include "evaluate/ablation.hpp"
 #include "evaluate/blend_error.hpp"
 #include "evaluate/candidates.hpp"
 #include "evaluate/every_texture.hpp"
 #include "evaluate/map_evaluation.hpp"
 #include "evaluate/subject.hpp"
+#include "io/stage_clock.hpp"
 
 namespace facezip {
 namespace {
@@ -43,7 +43,7 @@ void countBytes(const Package& package, const Candidates& candidates, const Subj
 }
 
 /// Every map of the package beside the candidates, which are gone when this returns.
-void evaluateMaps(const Package& package, const Subject& subject, const EvaluateOptions& options, StageClock& clock,
+void evaluateMaps(const Package& package, const Subject& subject, const EvaluateOptions& options, io::StageClock& clock,
                   Evaluation& evaluation) {
   Candidates candidates = makeCandidates(package, subject, options, clock);
   evaluation.search = candidates.search;
@@ -70,7 +70,7 @@ void evaluateMaps(const Package& package, const Subject& subject, const Evaluate
 Evaluation evaluatePackage(const Capture& capture, const Package& package, const EvaluateOptions& options,
                            const Device& device, Progress& progress) {
   if (options.pictures && !options.pictures->map.empty()) package.mapIndex(options.pictures->map);  // or throws
-  StageClock clock;
+  io::StageClock clock;
   const Subject subject = makeSubject(capture, package, options.memory_bytes, options.shapes, device, progress);
   Evaluation evaluation;
   evaluation.method = nameOf(subject.recorded.method);

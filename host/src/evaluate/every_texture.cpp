@@ -4,9 +4,10 @@
 
 #include <cmath>
 
+#include "bands/covered_texels.hpp"
+#include "bands/map_bands.hpp"
 #include "blocks/block_encoder.hpp"
-#include "compress/bands/covered_texels.hpp"
-#include "compress/bands/map_bands.hpp"
+#include "blocks/block_format.hpp"
 #include "compress/package_form.hpp"
 #include "io/counts.hpp"
 #include "raster/texel_masks.hpp"
@@ -39,7 +40,7 @@ std::optional<MapErrors> everyTextureErrors(const OpenMap& map, BlockFormat form
   const image::ImageShape& shape = map.samples->shape();
   if (shape.type != SampleType::kUint8) return std::nullopt;
   blocks::EncoderOptions options;
-  options.format = formatFor(format, shape.channels);
+  options.format = blocks::formatFor(format, shape.channels);
   options.channels = shape.channels;
   options.quality = blocks::Quality::kNormal;
   options.astc_effort = blocks::AstcEffort{.search = 60.0f};
@@ -82,7 +83,7 @@ std::optional<MapErrors> everyTextureErrors(const OpenMap& map, BlockFormat form
 
 std::uint64_t everyTextureBytes(const PackageMap& map, BlockFormat format, int expressions) {
   const std::uint64_t texture = map.sample_type == SampleType::kUint8
-                                    ? blocks::blockBytes(formatFor(format, map.channels), map.width, map.height)
+                                    ? blocks::blockBytes(blocks::formatFor(format, map.channels), map.width, map.height)
                                     : map.frameBytes();
   return texture * (static_cast<std::uint64_t>(expressions) + 1);
 }

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "compress/bands/map_set.hpp"
+#include "bands/map_set.hpp"
 #include "evaluate/subject.hpp"
 #include "facezip/block_format.hpp"
 #include "facezip/evaluate.hpp"

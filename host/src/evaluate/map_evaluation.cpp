@@ -6,9 +6,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "compress/bands/covered_texels.hpp"
-#include "compress/rate/block_rank_energy.hpp"
-#include "compress/search/gram.hpp"
+#include "bands/covered_texels.hpp"
 #include "evaluate/ablation.hpp"
 #include "evaluate/blend_error.hpp"
 #include "evaluate/error_pictures.hpp"
@@ -17,6 +15,8 @@
 #include "evaluate/pca.hpp"
 #include "evaluate/texel_errors.hpp"
 #include "raster/texel_masks.hpp"
+#include "rate/block_rank_energy.hpp"
+#include "search/gram.hpp"
 
 namespace facezip::evaluate {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "compress/bands/map_bands.hpp"
+#include "bands/map_bands.hpp"
 #include "evaluate/candidates.hpp"
 #include "evaluate/subject.hpp"
 #include "facezip/evaluate.hpp"

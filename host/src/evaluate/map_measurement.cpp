@@ -1,6 +1,6 @@
 #include "evaluate/map_measurement.hpp"
 
-#include "compress/bands/covered_texels.hpp"
+#include "bands/covered_texels.hpp"
 #include "evaluate/blend_error.hpp"
 #include "evaluate/normal_angle.hpp"
 #include "evaluate/texel_errors.hpp"

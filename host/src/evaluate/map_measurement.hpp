@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "compress/bands/tile_band.hpp"
+#include "bands/tile_band.hpp"
 #include "evaluate/error_distribution.hpp"
 #include "evaluate/error_pictures.hpp"
 #include "evaluate/package_decoder.hpp"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "compress/bands/covered_texels.hpp"
+#include "bands/covered_texels.hpp"
 
 namespace facezip::evaluate {
 namespace {

@@ -3,8 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
-#include "compress/bands/band_differences.hpp"
-#include "compress/bands/covered_texels.hpp"
+#include "bands/band_differences.hpp"
+#include "bands/covered_texels.hpp"
 
 namespace facezip::evaluate {
 

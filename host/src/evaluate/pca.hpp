@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "compress/bands/tile_band.hpp"
+#include "bands/tile_band.hpp"
 
 namespace facezip::evaluate {
 

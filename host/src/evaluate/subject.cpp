@@ -6,11 +6,11 @@
 #include <optional>
 #include <unordered_map>
 
+#include "bands/map_bands.hpp"
 #include "compress/band_plan.hpp"
-#include "compress/bands/map_bands.hpp"
 #include "compress/method_record.hpp"
 #include "facezip/rig.hpp"
-#include "package/package_json.hpp"
+#include "io/quoted.hpp"
 
 namespace facezip::evaluate {
 namespace {
@@ -80,7 +80,7 @@ Capture withExpressions(const Capture& capture, const std::vector<std::size_t>& 
 Capture matchingCapture(const Capture& capture, const Package& package, bool rigged) {
   if (!rigged && capture.expressions != package.expressions()) {
     const auto [captured, packed] = std::ranges::mismatch(capture.expressions, package.expressions());
-    const auto named = [](const auto& name, const auto& end) { return name == end ? "none" : package::quoted(*name); };
+    const auto named = [](const auto& name, const auto& end) { return name == end ? "none" : io::quoted(*name); };
     throw InputError(
         {packageFile(package), fmt::format("expressions[{}]", packed - package.expressions().begin()),
          fmt::format("{}, as {} has it", named(captured, capture.expressions.end()), capture.directory.string()),

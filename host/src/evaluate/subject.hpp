@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "compress/bands/map_set.hpp"
-#include "compress/face.hpp"
+#include "bands/map_set.hpp"
 #include "evaluate/package_decoder.hpp"
+#include "face/face.hpp"
 #include "facezip/capture.hpp"
 #include "facezip/compress.hpp"
 #include "facezip/device.hpp"

@@ -3,7 +3,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "compress/bands/covered_texels.hpp"
+#include "bands/covered_texels.hpp"
 
 namespace facezip::evaluate {
 
@@ -27,7 +27,9 @@ void texelErrors(std::span<const float> decoded, std::span<const float> captured
 
 TexelErrors summarizeTexelErrors(const ErrorDistribution& errors) {
   const double rmse = errors.rootMeanSquare();
-  return {rmse, 20.0 * std::log10(255.0 / rmse), errors.quantile(0.99), errors.max()};
+  TexelErrors summary{rmse, 20.0 * std::log10(255.0 / rmse), errors.quantile(0.99), errors.max(), {}};
+  for (std::size_t i = 0; i < summary.beyond.size(); ++i) summary.beyond[i] = errors.beyond(TexelErrors::kNoticed[i]);
+  return summary;
 }
 
 }  // namespace facezip::evaluate

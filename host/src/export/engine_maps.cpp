@@ -74,7 +74,7 @@ std::optional<BlockFormat> blocksOf(const PackageMap& map) {
 std::vector<EngineMap> engineMaps(const Package& package) {
   std::vector<EngineMap> maps;
   std::set<std::string> taken;
-  const std::vector<MapRole> roles = rolesOf(package.maps());
+  const std::vector<mesh::MapRole> roles = mesh::rolesOf(package.maps());
   for (std::size_t m = 0; m < roles.size(); ++m) {
     const PackageMap& map = package.maps()[m];
     if (map.sample_type == SampleType::kFloat32) continue;

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "export/map_roles.hpp"
 #include "facezip/package.hpp"
 #include "facezip/progress.hpp"
+#include "mesh/map_roles.hpp"
 
 namespace facezip::exporting {
 
@@ -22,7 +22,7 @@ struct EngineDifference {
 struct EngineMap {
   std::string id;  ///< the map's name, as shading languages take it
   PackageMap map;
-  MapRole role = MapRole::kOther;
+  mesh::MapRole role = mesh::MapRole::kOther;
   std::vector<EngineDifference> differences;  ///< C, of codes of 8 bits
 };
 

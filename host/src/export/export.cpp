@@ -11,7 +11,6 @@
 
 #include "export/engine_maps.hpp"
 #include "export/export_files.hpp"
-#include "export/gltf_scene.hpp"
 #include "export/godot.hpp"
 #include "export/unity.hpp"
 #include "export/unreal.hpp"
@@ -20,6 +19,7 @@
 #include "io/file_pieces.hpp"
 #include "io/folder.hpp"
 #include "io/staged_directory.hpp"
+#include "mesh/gltf_scene.hpp"
 #include "package/package_json.hpp"
 
 namespace facezip {
@@ -37,17 +37,17 @@ enum class Textures {
 /// package; without it, a copy.
 struct Target {
   std::vector<std::string> files;
-  std::vector<exporting::MapRole> roles;  ///< that its material shows
+  std::vector<mesh::MapRole> roles;  ///< that its material shows
   Textures textures = Textures::kPackage;
   void (*write)(const Package& package, const fs::path& folder, Progress& progress) = nullptr;
 };
 
 const std::map<std::string, Target>& targets() {
-  using exporting::MapRole;
-  static const std::vector<MapRole> every = {MapRole::kAlbedo, MapRole::kNormal, MapRole::kRoughness,
-                                             MapRole::kOcclusion};
+  static const std::vector<mesh::MapRole> every = {mesh::MapRole::kAlbedo, mesh::MapRole::kNormal,
+                                                   mesh::MapRole::kRoughness, mesh::MapRole::kOcclusion};
   // Cycles finds occlusion itself.
-  static const std::vector<MapRole> traced = {MapRole::kAlbedo, MapRole::kNormal, MapRole::kRoughness};
+  static const std::vector<mesh::MapRole> traced = {mesh::MapRole::kAlbedo, mesh::MapRole::kNormal,
+                                                    mesh::MapRole::kRoughness};
   static const std::map<std::string, Target> all = {
       {"gltf", {{"gltf.md", "facezip_blend.h"}, every}},
       {"three", {{"three.md", "facezip_three.js"}, every}},
@@ -84,26 +84,25 @@ nlohmann::json blendExtras(const PackageDescription& description) {
   blend.erase("method");
   blend["folder"] = "package";
   blend["roles"] = nlohmann::json::object();
-  const std::vector<exporting::MapRole> roles = exporting::rolesOf(description.maps);
+  const std::vector<mesh::MapRole> roles = mesh::rolesOf(description.maps);
   for (std::size_t m = 0; m < roles.size(); ++m) {
-    if (roles[m] != exporting::MapRole::kOther)
-      blend["roles"][exporting::roleName(roles[m])] = description.maps[m].name;
+    if (roles[m] != mesh::MapRole::kOther) blend["roles"][mesh::roleName(roles[m])] = description.maps[m].name;
   }
   return {{"facezip", blend}};
 }
 
 /// The material of scene.gltf, for tools that know nothing of facezip: plain neutrals.
-exporting::GltfMaterial plainMaterial(const Package& package, Textures textures) {
-  exporting::GltfMaterial material;
+mesh::GltfMaterial plainMaterial(const Package& package, Textures textures) {
+  mesh::GltfMaterial material;
   if (textures == Textures::kNone) return material;
   const bool own = textures == Textures::kOwn;
   for (const exporting::EngineMap& map : exporting::engineMaps(package)) {
     if (!own && !map.map.neutral_file.ends_with(".png")) continue;
     const std::string file = own ? "textures/" + map.id + "_neutral.png" : "package/" + map.map.neutral_file;
-    if (map.role == exporting::MapRole::kAlbedo) material.base_colour_texture = file;
-    if (map.role == exporting::MapRole::kNormal) material.normal_texture = file;
-    if (map.role == exporting::MapRole::kRoughness) material.roughness_texture = file;
-    if (map.role == exporting::MapRole::kOcclusion) material.occlusion_texture = file;
+    if (map.role == mesh::MapRole::kAlbedo) material.base_colour_texture = file;
+    if (map.role == mesh::MapRole::kNormal) material.normal_texture = file;
+    if (map.role == mesh::MapRole::kRoughness) material.roughness_texture = file;
+    if (map.role == mesh::MapRole::kOcclusion) material.occlusion_texture = file;
   }
   if (!own) material.extras = blendExtras(package.description());
   return material;
@@ -162,8 +161,8 @@ std::vector<std::string> exportPackage(const Package& package, const std::string
   } else {
     copyPackage(package, staged.path() / "package", memory_bytes, progress);
   }
-  exporting::addBlendToGltf(mesh::readPackageMesh(package, memory_bytes), staged.path() / "scene.gltf",
-                            plainMaterial(package, chosen.textures));
+  mesh::addBlendToGltf(mesh::readPackageMesh(package, memory_bytes), staged.path() / "scene.gltf",
+                       plainMaterial(package, chosen.textures));
   for (const std::string& file : chosen.files) {
     const std::string text(exporting::embeddedExportFiles().at(file));
     const bool readme = file.ends_with(".md");
@@ -171,7 +170,7 @@ std::vector<std::string> exportPackage(const Package& package, const std::string
   }
   staged.commit();
   std::vector<std::string> notes = chosen.write != nullptr ? exporting::lossesOf(package) : std::vector<std::string>();
-  for (std::string& note : exporting::notesOfRoles(package.maps(), chosen.roles)) notes.push_back(std::move(note));
+  for (std::string& note : mesh::notesOfRoles(package.maps(), chosen.roles)) notes.push_back(std::move(note));
   return notes;
 }
 

@@ -78,7 +78,7 @@ std::string valueFunction(const EngineMap& map, const PackageWeights& weights) {
 
 std::string fragmentLines(const EngineMap& map) {
   switch (map.role) {
-    case MapRole::kAlbedo: {
+    case mesh::MapRole::kAlbedo: {
       const char* gray = map.map.channels < 3 ? "rrr" : "rgb";
       std::string text = fmt::format("  vec3 albedo = clamp({}_value(UV).{}, vec3(0.0), vec3(1.0));\n", map.id, gray);
       if (map.map.colour_space == "linear") return text + "  ALBEDO = albedo;\n";
@@ -87,13 +87,13 @@ std::string fragmentLines(const EngineMap& map) {
              "  ALBEDO = mix(pow((albedo + vec3(0.055)) / 1.055, vec3(2.4)), albedo / 12.92, "
              "step(albedo, vec3(0.04045)));\n";
     }
-    case MapRole::kNormal:
+    case mesh::MapRole::kNormal:
       return fmt::format("  NORMALMAP = clamp({}_value(UV).rgb, vec3(0.0), vec3(1.0));\n", map.id);
-    case MapRole::kRoughness:
+    case mesh::MapRole::kRoughness:
       return fmt::format("  roughness = clamp({}_value(UV).r, 0.05, 1.0);\n", map.id);
-    case MapRole::kOcclusion:
+    case mesh::MapRole::kOcclusion:
       return fmt::format("  AO = clamp({}_value(UV).r, 0.0, 1.0);\n", map.id);
-    case MapRole::kOther:
+    case mesh::MapRole::kOther:
       break;
   }
   return "";

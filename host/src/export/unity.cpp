@@ -38,7 +38,7 @@ std::string surfaceLine(const Package& package, const EngineMap& map) {
   const std::string value = call(package, map);
   const char* colour = map.map.channels < 3 ? "rrr" : "rgb";
   switch (map.role) {
-    case MapRole::kAlbedo:
+    case mesh::MapRole::kAlbedo:
       if (map.map.colour_space == "linear") {
         return fmt::format(
             "  surface.albedo = saturate({}.{});\n#ifdef UNITY_COLORSPACE_GAMMA\n"
@@ -49,13 +49,13 @@ std::string surfaceLine(const Package& package, const EngineMap& map) {
           "  surface.albedo = {0}.{1};\n#ifdef UNITY_COLORSPACE_GAMMA\n  surface.albedo = saturate(surface.albedo);\n"
           "#else\n  surface.albedo = facezip_linear(surface.albedo);\n#endif\n",
           value, colour);
-    case MapRole::kNormal:
+    case mesh::MapRole::kNormal:
       return fmt::format("  surface.normal = facezip_unit({}.rgb);\n", value);
-    case MapRole::kRoughness:
+    case mesh::MapRole::kRoughness:
       return fmt::format("  surface.roughness = saturate({}.r);\n", value);
-    case MapRole::kOcclusion:
+    case mesh::MapRole::kOcclusion:
       return fmt::format("  surface.occlusion = saturate({}.r);\n", value);
-    case MapRole::kOther:
+    case mesh::MapRole::kOther:
       break;
   }
   return "";

@@ -29,32 +29,32 @@ std::string nodeCode(const Package& package, const EngineMap& map) {
   text += ");\n";
   const char* colour = map.map.channels < 3 ? "rrr" : "rgb";
   switch (map.role) {
-    case MapRole::kAlbedo:
+    case mesh::MapRole::kAlbedo:
       if (map.map.colour_space == "linear") return text + fmt::format("return saturate(value.{});\n", colour);
       return text + fmt::format("return face.facezip_linear(value.{});\n", colour);
-    case MapRole::kNormal:  // whose y runs down here
+    case mesh::MapRole::kNormal:  // whose y runs down here
       return text + "return face.facezip_unit(value.rgb) * float3(1.0, -1.0, 1.0);\n";
-    case MapRole::kRoughness:
-    case MapRole::kOcclusion:
+    case mesh::MapRole::kRoughness:
+    case mesh::MapRole::kOcclusion:
       return text + "return saturate(value.r);\n";
-    case MapRole::kOther:
+    case mesh::MapRole::kOther:
       break;
   }
   return text + "return value;\n";
 }
 
 /// Property of the material that a role goes to, and how many floats its node gives.
-std::pair<const char*, int> materialProperty(MapRole role) {
+std::pair<const char*, int> materialProperty(mesh::MapRole role) {
   switch (role) {
-    case MapRole::kAlbedo:
+    case mesh::MapRole::kAlbedo:
       return {"MP_BASE_COLOR", 3};
-    case MapRole::kNormal:
+    case mesh::MapRole::kNormal:
       return {"MP_NORMAL", 3};
-    case MapRole::kRoughness:
+    case mesh::MapRole::kRoughness:
       return {"MP_ROUGHNESS", 1};
-    case MapRole::kOcclusion:
+    case mesh::MapRole::kOcclusion:
       return {"MP_AMBIENT_OCCLUSION", 1};
-    case MapRole::kOther:
+    case mesh::MapRole::kOther:
       break;
   }
   return {"", 4};

@@ -10,12 +10,12 @@
 #include <string_view>
 
 #include "io/counts.hpp"
-#include "package/package_json.hpp"
+#include "io/quoted.hpp"
 
 namespace facezip::mesh {
 namespace {
+using io::JsonField;
 using nlohmann::json;
-using package::JsonField;
 using Bytes = std::span<const std::byte>;
 
 static_assert(std::endian::native == std::endian::little, "numbers of glTF are read as they stand");
@@ -38,7 +38,7 @@ int componentsOf(const JsonField& type) {
   for (std::size_t n = 0; n < kNames.size(); ++n) {
     if (kNames[n] == name) return static_cast<int>(n) + 1;
   }
-  type.fail("SCALAR, VEC2, VEC3 or VEC4", package::quoted(name));
+  type.fail("SCALAR, VEC2, VEC3 or VEC4", io::quoted(name));
 }
 
 int optionalInteger(const JsonField& object, const char* key, int least, int largest, int otherwise) {

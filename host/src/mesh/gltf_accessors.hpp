@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "package/json_field.hpp"
+#include "io/json_field.hpp"
 
 namespace facezip::mesh {
 
@@ -43,12 +43,12 @@ struct Accessor {
 class GltfAccessors {
  public:
   /// root  the document; buffer  the bytes of its one buffer. Throws InputError naming the field.
-  GltfAccessors(const package::JsonField& root, std::span<const std::byte> buffer);
+  GltfAccessors(const io::JsonField& root, std::span<const std::byte> buffer);
 
   std::size_t size() const { return accessors_.size(); }
   const Accessor& operator[](std::size_t index) const { return accessors_[index]; }
   /// The one that a field refers to. Throws InputError.
-  const Accessor& at(const package::JsonField& reference) const;
+  const Accessor& at(const io::JsonField& reference) const;
 
   /// `bufferViews` and `accessors` anew, of what was read alone.
   const nlohmann::json& viewsJson() const { return views_json_; }
@@ -60,10 +60,10 @@ class GltfAccessors {
     std::size_t offset = 0;
     std::size_t stride = 0;  ///< 0: one element behind the other
   };
-  void readView(const package::JsonField& field, std::span<const std::byte> buffer);
-  void readAccessor(const package::JsonField& field);
-  void readSparse(const package::JsonField& field, const Accessor& accessor, nlohmann::json& json);
-  Elements elementsOf(const package::JsonField& field, int component_type, int components, std::size_t count);
+  void readView(const io::JsonField& field, std::span<const std::byte> buffer);
+  void readAccessor(const io::JsonField& field);
+  void readSparse(const io::JsonField& field, const Accessor& accessor, nlohmann::json& json);
+  Elements elementsOf(const io::JsonField& field, int component_type, int components, std::size_t count);
 
   std::size_t bytes_left_;  ///< of the buffer: accessors over the same bytes could go on for ever
   std::vector<View> views_;

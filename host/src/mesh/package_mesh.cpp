@@ -9,16 +9,16 @@
 
 #include "facezip/version.hpp"
 #include "io/folder.hpp"
+#include "io/json_field.hpp"
 #include "io/memory_bound.hpp"
+#include "io/safe_names.hpp"
 #include "mesh/glb.hpp"
 #include "mesh/gltf_accessors.hpp"
-#include "package/json_field.hpp"
-#include "package/safe_names.hpp"
 
 namespace facezip::mesh {
 namespace {
+using io::JsonField;
 using nlohmann::json;
-using package::JsonField;
 using Bytes = std::span<const std::byte>;
 
 constexpr const char* kCure = "the mesh is damaged: write the package again";
@@ -79,7 +79,7 @@ json targetNamesJson(const JsonField& mesh, std::size_t targets) {
   json names = json::array();
   std::set<std::string> seen;
   for (const JsonField& field : mesh["extras"]["targetNames"].elements(targets, targets)) {
-    names.push_back(package::fileSafeName(field));
+    names.push_back(io::fileSafeName(field));
     if (!seen.insert(names.back()).second) field.fail("unique names", field.got() + " twice");
   }
   return names;
@@ -133,7 +133,7 @@ PackageMesh parsePackageMesh(std::string glb, const std::string& file) {
   PackageMesh mesh;
   mesh.file = std::make_shared<const std::string>(std::move(glb));
   const GlbParts parts = splitGlb(std::as_bytes(std::span(*mesh.file)), file);
-  const json document = package::parseJson(parts.json, file, kCure);
+  const json document = io::parseJson(parts.json, file, kCure);
   const JsonField root(document, file, "", kCure);
   const JsonField version = root["asset"]["version"];
   if (version.text() != "2.0") version.fail("\"2.0\"", version.got());

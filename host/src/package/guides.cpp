@@ -7,9 +7,10 @@
 #include <cstring>
 #include <set>
 
+#include "io/quoted.hpp"
+#include "io/safe_names.hpp"
 #include "package/package_files.hpp"
 #include "package/package_json.hpp"
-#include "package/safe_names.hpp"
 
 namespace facezip::package {
 namespace {
@@ -23,9 +24,9 @@ Document masksJson(const PackageMasks& masks) {
 
 constexpr int kMostMasks = 1 << 16;
 
-PackageMasks parseMasks(const JsonField& field) {
+PackageMasks parseMasks(const io::JsonField& field) {
   PackageMasks masks;
-  masks.file = fileInPackage(field["file"], ".png");
+  masks.file = io::fileInPackage(field["file"], ".png");
   masks.count = field["count"].integer(1, kMostMasks);
   masks.tile_width = field["tile_width"].integer(1, kMostMaskCells);
   masks.tile_height = field["tile_height"].integer(1, kMostMaskCells);
@@ -36,24 +37,24 @@ PackageMasks parseMasks(const JsonField& field) {
                        fmt::format("{} x {} tiles", masks.columns, masks.rows));
   }
   const std::size_t count = static_cast<std::size_t>(masks.count);
-  for (const JsonField& sample : field["samples"].elements(count, count)) {
-    const std::vector<JsonField> uv = sample.elements(2, 2);
+  for (const io::JsonField& sample : field["samples"].elements(count, count)) {
+    const std::vector<io::JsonField> uv = sample.elements(2, 2);
     constexpr double kRoom = 1e-3;  // UVs of exporters pass 0 and 1 by their rounding
     masks.samples.push_back({uv[0].number(-kRoom, 1.0 + kRoom), uv[1].number(-kRoom, 1.0 + kRoom)});
   }
   return masks;
 }
 
-std::vector<PackageRegion> parseRegions(const JsonField& field, int mask_count) {
+std::vector<PackageRegion> parseRegions(const io::JsonField& field, int mask_count) {
   std::vector<PackageRegion> regions;
   std::set<std::string> names;
   std::set<int> taken;
-  for (const JsonField& element : field.elements(0, kMostMasks)) {
+  for (const io::JsonField& element : field.elements(0, kMostMasks)) {
     PackageRegion& region = regions.emplace_back();
-    region.name = fileSafeName(element["name"]);
+    region.name = io::fileSafeName(element["name"]);
     if (!names.insert(region.name).second)
-      element["name"].fail("unique region names", package::quoted(region.name) + " twice");
-    for (const JsonField& mask : element["masks"].elements(0, static_cast<std::size_t>(mask_count))) {
+      element["name"].fail("unique region names", io::quoted(region.name) + " twice");
+    for (const io::JsonField& mask : element["masks"].elements(0, static_cast<std::size_t>(mask_count))) {
       region.masks.push_back(mask.integer(0, mask_count - 1));
       if (!taken.insert(region.masks.back()).second) mask.fail("a mask that no other region has", mask.got());
     }
@@ -87,8 +88,8 @@ void addGuides(const PackageDescription& description, Document& document) {
   document["regions"] = regions;
 }
 
-void parseGuides(const JsonField& document, PackageDescription& description) {
-  if (document.has("mesh")) description.mesh_file = fileInPackage(document["mesh"]["file"], ".glb");
+void parseGuides(const io::JsonField& document, PackageDescription& description) {
+  if (document.has("mesh")) description.mesh_file = io::fileInPackage(document["mesh"]["file"], ".glb");
   if (document.has("masks")) description.masks = parseMasks(document["masks"]);
   if (!document.has("regions")) return;
   if (!description.masks) document["regions"].fail("masks that regions are made of", "no field masks");

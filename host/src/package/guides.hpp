@@ -7,7 +7,7 @@
 #include "facezip/package.hpp"
 #include "image/image_file.hpp"
 #include "io/folder.hpp"
-#include "package/json_field.hpp"
+#include "io/json_field.hpp"
 
 namespace facezip::package {
 
@@ -19,7 +19,7 @@ inline constexpr int kMostMaskCells = 128;  ///< along a side: masks are smooth
 void addGuides(const PackageDescription& description, nlohmann::ordered_json& document);
 
 /// Reads them, where they are. Throws InputError.
-void parseGuides(const JsonField& document, PackageDescription& description);
+void parseGuides(const io::JsonField& document, PackageDescription& description);
 
 /// Size of the image of the masks.
 image::ImageShape masksShape(const PackageMasks& masks);

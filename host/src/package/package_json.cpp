@@ -10,11 +10,13 @@
 #include <utility>
 
 #include "blocks/block_format.hpp"
+#include "image/map_fields.hpp"
 #include "io/composed.hpp"
+#include "io/json_field.hpp"
+#include "io/quoted.hpp"
+#include "io/safe_names.hpp"
 #include "package/guides.hpp"
-#include "package/json_field.hpp"
 #include "package/package_writer.hpp"
-#include "package/safe_names.hpp"
 
 namespace facezip::package {
 namespace {
@@ -70,35 +72,35 @@ Document mapJson(const PackageMap& map) {
           {"differences", differences}};
 }
 
-void requireUnique(const std::vector<JsonField>& fields, const char* what) {
+void requireUnique(const std::vector<io::JsonField>& fields, const char* what) {
   std::set<std::string> seen;
-  for (const JsonField& field : fields) {
+  for (const io::JsonField& field : fields) {
     if (!seen.insert(io::composed(field.text())).second)
       field.fail(fmt::format("unique {} names", what), field.got() + " twice");
   }
 }
 
-std::vector<std::string> parseExpressions(const JsonField& field) {
-  const std::vector<JsonField> fields = field.elements(1, kMaxExpressions);
+std::vector<std::string> parseExpressions(const io::JsonField& field) {
+  const std::vector<io::JsonField> fields = field.elements(1, image::kMaxExpressions);
   std::vector<std::string> names;
-  for (const JsonField& name : fields) names.push_back(fileSafeName(name));
+  for (const io::JsonField& name : fields) names.push_back(io::fileSafeName(name));
   requireUnique(fields, "expression");
   return names;
 }
 
-std::vector<double> parseNumbers(const JsonField& field, int count, double least, double most) {
+std::vector<double> parseNumbers(const io::JsonField& field, int count, double least, double most) {
   std::vector<double> numbers;
-  for (const JsonField& number : field.elements(static_cast<std::size_t>(count), static_cast<std::size_t>(count))) {
+  for (const io::JsonField& number : field.elements(static_cast<std::size_t>(count), static_cast<std::size_t>(count))) {
     numbers.push_back(number.number(least, most));
   }
   return numbers;
 }
 
-PackageWeights parseWeights(const JsonField& field, int expressions, int differences) {
+PackageWeights parseWeights(const io::JsonField& field, int expressions, int differences) {
   PackageWeights weights;
   const std::size_t files = static_cast<std::size_t>(differences - 1) / 4 + 1;
-  for (const JsonField& file : field["files"].elements(files, files))
-    weights.files.push_back(fileInPackage(file, ".png"));
+  for (const io::JsonField& file : field["files"].elements(files, files))
+    weights.files.push_back(io::fileInPackage(file, ".png"));
   weights.columns = field["columns"].integer(1, kMaxAtlasSide);
   weights.rows = field["rows"].integer(1, kMaxAtlasSide);
   weights.tile_width = field["tile_width"].integer(1, kMaxAtlasSide - 2);
@@ -121,7 +123,7 @@ PackageWeights parseWeights(const JsonField& field, int expressions, int differe
 
 /// Zero must be a code: outside the face a difference is zero, and there the neutral must come back untouched. Numbers
 /// of 17 digits come back from JSON as they were written, so no tolerance is needed.
-void requireExactZero(const JsonField& field, double scale, double offset, int largest_code) {
+void requireExactZero(const io::JsonField& field, double scale, double offset, int largest_code) {
   if (scale == 0.0 && offset == 0.0) return;
   const double zero_code = std::round(-offset / scale);
   if (scale > 0.0 && zero_code >= 0.0 && zero_code <= largest_code && offset == -(scale * zero_code)) return;
@@ -130,13 +132,13 @@ void requireExactZero(const JsonField& field, double scale, double offset, int l
 }
 
 /// The blocks that a texture of a map says that it has.
-std::optional<BlockFormat> parseFormat(const JsonField& field, const PackageMap& map) {
+std::optional<BlockFormat> parseFormat(const io::JsonField& field, const PackageMap& map) {
   if (!field.has("format")) return std::nullopt;
-  const JsonField format = field["format"];
+  const io::JsonField format = field["format"];
   const std::string name = format.text();
   const auto formats = blocks::blockFormats();
   const auto found = std::ranges::find(formats, name, &blocks::BlockFormatInfo::name);
-  if (found == formats.end()) format.fail("one of " + blockFormatNames(), quoted(name));
+  if (found == formats.end()) format.fail("one of " + blockFormatNames(), io::quoted(name));
   if (map.channels > found->max_channels) {
     format.fail(fmt::format("a format of {} channels", map.channels), format.got());
   }
@@ -144,12 +146,12 @@ std::optional<BlockFormat> parseFormat(const JsonField& field, const PackageMap&
   return found->format;
 }
 
-PackageDifference parseDifference(const JsonField& field, const PackageMap& map) {
+PackageDifference parseDifference(const io::JsonField& field, const PackageMap& map) {
   const int channels = map.channels;
   const int largest_code = (1 << map.difference_bits) - 1;
   PackageDifference difference;
   difference.format = parseFormat(field, map);
-  difference.file = fileInPackage(field["file"], difference.format ? ".ktx2" : ".png");
+  difference.file = io::fileInPackage(field["file"], difference.format ? ".ktx2" : ".png");
   if (difference.format && map.difference_bits != 8) {
     field["format"].fail("none beside difference_bits of 16: blocks hold codes of 8", field["format"].got());
   }
@@ -166,16 +168,16 @@ const char* neutralExtension(const PackageMap& map) {
   return map.sample_type == SampleType::kFloat32 ? ".exr" : ".png";
 }
 
-SampleType parseSampleType(const JsonField& field) {
+SampleType parseSampleType(const io::JsonField& field) {
   const std::string name = field.text();
   for (const auto& [value, text] : kSampleTypes) {
     if (name == text) return value;
   }
-  field.fail("\"8-bit\", \"16-bit\" or \"float\"", quoted(name));
+  field.fail("\"8-bit\", \"16-bit\" or \"float\"", io::quoted(name));
 }
 
 /// Map and set must agree on the cells: the kernel that samples weights clamps to the set's grid.
-void requireSameGrid(const JsonField& field, const PackageMap& map, const PackageWeights& weights) {
+void requireSameGrid(const io::JsonField& field, const PackageMap& map, const PackageWeights& weights) {
   const int columns = weightCells(map.width, map.weight_scale);
   const int rows = weightCells(map.height, map.weight_scale);
   if (columns == weights.tile_width && rows == weights.tile_height) return;
@@ -184,22 +186,22 @@ void requireSameGrid(const JsonField& field, const PackageMap& map, const Packag
              fmt::format("{} x {} at weight_scale {}", columns, rows, map.weight_scale));
 }
 
-PackageMap parseMap(const JsonField& field, const std::vector<PackageWeights>& weight_sets, int differences) {
+PackageMap parseMap(const io::JsonField& field, const std::vector<PackageWeights>& weight_sets, int differences) {
   PackageMap map;
-  map.name = fileSafeName(field["name"]);
+  map.name = io::fileSafeName(field["name"]);
   map.width = field["width"].integer(1, kMaxSide);
   map.height = field["height"].integer(1, kMaxSide);
   map.channels = field["channels"].integer(1, 4);
   map.sample_type = parseSampleType(field["sample_type"]);
-  map.colour_space = parseColourSpace(field["colour_space"]);
+  map.colour_space = image::parseColourSpace(field["colour_space"]);
   map.weight_set = field["weights"].integer(0, static_cast<int>(weight_sets.size()) - 1);
   map.weight_scale = field["weight_scale"].integer(1, kMaxSide);
-  map.metric_weight = parseMetricWeight(field["metric_weight"]);
+  map.metric_weight = image::parseMetricWeight(field["metric_weight"]);
   map.neutral_format = parseFormat(field["neutral"], map);
-  map.neutral_file = fileInPackage(field["neutral"]["file"], neutralExtension(map));
+  map.neutral_file = io::fileInPackage(field["neutral"]["file"], neutralExtension(map));
   map.difference_bits = field["difference_bits"].oneOf(std::array{8, 16});
   const std::size_t count = static_cast<std::size_t>(differences);
-  for (const JsonField& difference : field["differences"].elements(count, count)) {
+  for (const io::JsonField& difference : field["differences"].elements(count, count)) {
     map.differences.push_back(parseDifference(difference, map));
   }
   requireSameGrid(field, map, weight_sets[static_cast<std::size_t>(map.weight_set)]);
@@ -207,7 +209,7 @@ PackageMap parseMap(const JsonField& field, const std::vector<PackageWeights>& w
 }
 
 /// A set that no map uses would cost memory in every reader and change no frame.
-void requireUsed(const std::vector<JsonField>& weight_sets, const std::vector<PackageMap>& maps) {
+void requireUsed(const std::vector<io::JsonField>& weight_sets, const std::vector<PackageMap>& maps) {
   for (std::size_t set = 0; set < weight_sets.size(); ++set) {
     const auto uses = [set](const PackageMap& map) { return static_cast<std::size_t>(map.weight_set) == set; };
     if (std::none_of(maps.begin(), maps.end(), uses)) {
@@ -216,11 +218,11 @@ void requireUsed(const std::vector<JsonField>& weight_sets, const std::vector<Pa
   }
 }
 
-void requireKnownVersion(const JsonField& document) {
-  const JsonField format = document["format"];
+void requireKnownVersion(const io::JsonField& document) {
+  const io::JsonField format = document["format"];
   if (format.text() != "facezip-package")
     format.fail("\"facezip-package\"", format.got(), "is this a facezip package?");
-  const JsonField version = document["version"];
+  const io::JsonField version = document["version"];
   const int number = version.integer(0, INT32_MAX);
   if (number < kImageFormatVersion || number > kFormatVersion) {
     version.fail(fmt::format("{} or {}, the versions that this facezip reads", kImageFormatVersion, kFormatVersion),
@@ -236,8 +238,8 @@ bool hasBlocks(const PackageDescription& description) {
 }
 
 /// Version 2 knows no blocks: whoever reads it would not find them.
-void requireVersionOfBlocks(const JsonField& document, const PackageDescription& description) {
-  const JsonField version = document["version"];
+void requireVersionOfBlocks(const io::JsonField& document, const PackageDescription& description) {
+  const io::JsonField version = document["version"];
   if (!hasBlocks(description) || version.integer(0, INT32_MAX) >= 3) return;
   version.fail("3, for textures in blocks (\"format\")", version.got(), "write the package again");
 }
@@ -266,32 +268,24 @@ std::string packageJson(const PackageDescription& description) {
   }
 }
 
-std::string parseColourSpace(const JsonField& field) {
-  const std::string name = field.text();
-  if (name != "sRGB" && name != "linear" && !name.empty()) field.fail("\"sRGB\", \"linear\" or \"\"", quoted(name));
-  return name;
-}
-
-double parseMetricWeight(const JsonField& field) { return field.number(0, kLargestCoefficient); }
-
 PackageDescription parsePackageJson(const std::string& text, const std::string& file) {
   constexpr std::size_t kMostMaps = 256;
-  const json json_document = parseJson(text, file);
-  const JsonField document(json_document, file, "");
+  const json json_document = io::parseJson(text, file);
+  const io::JsonField document(json_document, file, "");
   requireKnownVersion(document);
   PackageDescription description;
   description.generator = document["generator"].text();
   description.name = document["name"].text();
   description.expressions = parseExpressions(document["expressions"]);
   description.differences = document["differences"].integer(1, kMaxDifferences);
-  const std::vector<JsonField> weight_sets = document["weights"].elements(1, kMostMaps);
-  for (const JsonField& weights : weight_sets) {
+  const std::vector<io::JsonField> weight_sets = document["weights"].elements(1, kMostMaps);
+  for (const io::JsonField& weights : weight_sets) {
     description.weights.push_back(
         parseWeights(weights, static_cast<int>(description.expressions.size()), description.differences));
   }
-  const std::vector<JsonField> maps = document["maps"].elements(1, kMostMaps);
-  std::vector<JsonField> names;
-  for (const JsonField& map : maps) {
+  const std::vector<io::JsonField> maps = document["maps"].elements(1, kMostMaps);
+  std::vector<io::JsonField> names;
+  for (const io::JsonField& map : maps) {
     description.maps.push_back(parseMap(map, description.weights, description.differences));
     names.push_back(map["name"]);
   }

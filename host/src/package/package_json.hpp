@@ -7,12 +7,9 @@
 
 namespace facezip::package {
 
-class JsonField;
-
 inline constexpr char kDescriptionFile[] = "package.json";
 inline constexpr int kFormatVersion = 3;       ///< newest, of packages with textures in blocks
 inline constexpr int kImageFormatVersion = 2;  ///< of all others: older facezips read them
-inline constexpr int kMaxExpressions = 65536;  ///< N
 inline constexpr int kMaxDifferences = 8;      ///< C
 inline constexpr int kMaxSide = 65536;         ///< texels along a side of a map
 inline constexpr int kMaxAtlasSide = 16384;    ///< what every GPU of the last decade takes as a texture
@@ -25,12 +22,5 @@ std::string packageJson(const PackageDescription& description);
 /// file  path for messages
 /// Throws InputError that names `file`, the field as a JSON path, what was expected and what was found.
 PackageDescription parsePackageJson(const std::string& text, const std::string& file);
-
-/// Fields of a map that a capture's description has too. Throw InputError.
-std::string parseColourSpace(const JsonField& field);
-double parseMetricWeight(const JsonField& field);
-
-/// Quotes text that came from a file for a message: without control characters, cut where it is long.
-std::string quoted(const std::string& text);
 
 }  // namespace facezip::package

@@ -6,18 +6,18 @@
 #include <optional>
 
 #include "io/counts.hpp"
+#include "io/json_field.hpp"
 #include "io/read_file.hpp"
 #include "io/write_file.hpp"
 #include "mesh/glb.hpp"
 #include "mesh/gltf_accessors.hpp"
-#include "package/json_field.hpp"
 
 namespace facezip::registration {
 namespace {
 namespace fs = std::filesystem;
+using io::JsonField;
 using mesh::Accessor;
 using mesh::GltfAccessors;
-using package::JsonField;
 using Bytes = std::span<const std::byte>;
 
 constexpr std::uintmax_t kMostBytes = std::uintmax_t{2} << 30;
@@ -223,7 +223,7 @@ GlbScan readGlbScan(const fs::path& file) {
   const std::string bytes = io::readFile(file, "a scan", "", kMostBytes);
   const std::string name = file.string();
   const mesh::GlbParts parts = mesh::splitGlb(std::as_bytes(std::span(bytes)), name);
-  const nlohmann::json document = package::parseJson(parts.json, name, kCure);
+  const nlohmann::json document = io::parseJson(parts.json, name, kCure);
   const JsonField root(document, name, "", kCure);
   if (root.has("extensionsRequired")) root["extensionsRequired"].elements(0, 0);
   const JsonField buffer = root["buffers"].elements(1, 1)[0];

@@ -1,11 +1,11 @@
 #include "register/landmark_files.hpp"
 
+#include "io/json_field.hpp"
 #include "io/read_file.hpp"
-#include "package/json_field.hpp"
 
 namespace facezip::registration {
 namespace {
-using package::JsonField;
+using io::JsonField;
 
 constexpr const char* kCure = "see docs/registration.md";
 constexpr double kFarthest = 1e9;  // of a coordinate, in any unit
@@ -13,8 +13,7 @@ constexpr double kFarthest = 1e9;  // of a coordinate, in any unit
 }  // namespace
 
 ScanLandmarks readScanLandmarks(const std::filesystem::path& file) {
-  const nlohmann::json json =
-      package::parseJson(io::readFile(file, "landmarks of the scans", kCure), file.string(), kCure);
+  const nlohmann::json json = io::parseJson(io::readFile(file, "landmarks of the scans", kCure), file.string(), kCure);
   const JsonField root(json, file.string(), "", kCure);
   ScanLandmarks landmarks;
   for (const auto& [scan, points] : root.object().items()) {
@@ -32,7 +31,7 @@ ScanLandmarks readScanLandmarks(const std::filesystem::path& file) {
 
 TemplateLandmarks readTemplateLandmarks(const std::filesystem::path& file, int vertices) {
   const nlohmann::json json =
-      package::parseJson(io::readFile(file, "landmarks of the template", kCure), file.string(), kCure);
+      io::parseJson(io::readFile(file, "landmarks of the template", kCure), file.string(), kCure);
   const JsonField root(json, file.string(), "", kCure);
   TemplateLandmarks landmarks;
   for (const auto& [name, vertex] : root.object().items()) landmarks[name] = root[name].integer(0, vertices - 1);

@@ -8,13 +8,13 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "compress/stage_clock.hpp"
 #include "facezip/error.hpp"
 #include "facezip/geometry/face_region.hpp"
 #include "facezip/geometry/length.hpp"
 #include "facezip/geometry/obj_io.hpp"
 #include "facezip/registration.hpp"
 #include "io/counts.hpp"
+#include "io/stage_clock.hpp"
 #include "io/staged_directory.hpp"
 #include "register/baked_files.hpp"
 #include "register/colour_drift.hpp"
@@ -283,7 +283,7 @@ ProtectedPaths inputsOf(const fs::path& scans, const fs::path& template_director
 RegistrationReport registerScans(const fs::path& scans, const fs::path& template_directory, const fs::path& capture,
                                  const RegistrationOptions& options, const Device& device, Progress& progress) {
   requireSaneOptions(options);
-  compress::StageClock clock;
+  io::StageClock clock;
   inputsOf(scans, template_directory, options).requireApartFromFolder(capture);
   io::StagedDirectory staged(capture, {kManifest, "\"generator\": \"facezip register\"", everyFile}, &progress);
   progress.stage("reading the template", 0);

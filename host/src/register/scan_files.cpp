@@ -9,7 +9,7 @@
 #include "facezip/geometry/obj_io.hpp"
 #include "facezip/geometry/textured_obj.hpp"
 #include "image/input_extensions.hpp"
-#include "package/safe_names.hpp"
+#include "io/safe_names.hpp"
 #include "register/glb_scan.hpp"
 
 namespace facezip::registration {
@@ -99,7 +99,7 @@ ScanFolder openScans(const fs::path& directory, const fs::path& landmarks) {
       found.neutral = file;
       continue;
     }
-    if (const auto fault = package::nameFault(name, ",=")) {
+    if (const auto fault = io::nameFault(name, ",=")) {
       throw InputError({file.string(), "scan", fault->expected, fault->got, "rename the file"});
     }
     found.expressions.push_back(file);

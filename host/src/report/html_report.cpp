@@ -12,10 +12,10 @@
 #include "facezip/report.hpp"
 #include "image/image_file.hpp"
 #include "io/base64.hpp"
+#include "io/json_field.hpp"
 #include "io/read_file.hpp"
 #include "io/scratch_directory.hpp"
 #include "package/guides.hpp"
-#include "package/json_field.hpp"
 #include "package/package_files.hpp"
 #include "package/package_json.hpp"
 #include "package/package_textures.hpp"
@@ -185,7 +185,7 @@ std::string forScript(const json& data) {
 std::string readCompressReport(const fs::path& file) {
   const std::string expected = "what `facezip compress --report` wrote";
   std::string text = io::readFile(file, expected);
-  const json report = package::parseJson(text, file.string());
+  const json report = io::parseJson(text, file.string());
   if (report.is_object() && report.value("facezip_report", json()) == "compress") return text;
   throw InputError({file.string(), "", expected, "something else", ""});
 }

@@ -31,6 +31,10 @@ json secondsJson(const std::vector<std::pair<std::string, double>>& seconds) {
   return object;
 }
 
+json formatJson(const std::optional<BlockFormat>& format) {
+  return format ? json(std::string(blockFormatName(*format))) : json(nullptr);
+}
+
 json permutationJson(const CompressReport& report) {
   json object = {{"cost", report.permutation_cost},
                  {"median_cost", report.permutation_cost_median},
@@ -48,7 +52,11 @@ json permutationJson(const CompressReport& report) {
 json toJson(const TexelErrors& errors) {
   // An exact result has no finite PSNR; JSON has no infinity.
   const json psnr = std::isfinite(errors.psnr) ? json(errors.psnr) : json(nullptr);
-  return {{"rmse", errors.rmse}, {"psnr", psnr}, {"p99", errors.p99}, {"max", errors.max}};
+  json beyond = json::object();
+  for (std::size_t i = 0; i < errors.beyond.size(); ++i) {
+    beyond[std::to_string(TexelErrors::kNoticed[i])] = errors.beyond[i];
+  }
+  return {{"rmse", errors.rmse}, {"psnr", psnr}, {"p99", errors.p99}, {"max", errors.max}, {"beyond", beyond}};
 }
 
 json toJson(const NormalAngles& angles) { return {{"mean", angles.mean}, {"p99", angles.p99}, {"max", angles.max}}; }
@@ -135,6 +143,8 @@ std::string toJson(const CompressReport& report) {
     object["rate_curve"].push_back({{"differences", point.differences},
                                     {"weight_scale", point.weight_scale},
                                     {"code_bits", point.code_bits},
+                                    {"texture_format", formatJson(point.texture_format)},
+                                    {"difference_format", formatJson(point.difference_format)},
                                     {"bytes", point.bytes},
                                     {"rmse", point.rmse}});
   }

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "compress/bands/covered_texels.hpp"
-#include "compress/bands/map_bands.hpp"
+#include "bands/covered_texels.hpp"
+#include "bands/map_bands.hpp"
 #include "raster/uv_raster.hpp"
 
 namespace facezip::rig {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "compress/bands/map_set.hpp"
+#include "bands/map_set.hpp"
 #include "facezip/progress.hpp"
 #include "rig/texture_solve.hpp"
 

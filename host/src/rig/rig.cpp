@@ -9,11 +9,11 @@
 #include <algorithm>
 #include <numbers>
 
-#include "compress/stage_clock.hpp"
 #include "facezip/geometry/float_origin.hpp"
 #include "facezip/package.hpp"
+#include "io/safe_names.hpp"
+#include "io/stage_clock.hpp"
 #include "package/footprint.hpp"
-#include "package/safe_names.hpp"
 #include "rig/moving_head.hpp"
 #include "rig/rig_json.hpp"
 #include "rig/rig_meshes.hpp"
@@ -55,7 +55,7 @@ std::vector<std::string> packageNamesOf(const std::vector<std::string>& expressi
     std::string longer = name;
     do longer += "_captured";
     while (taken(longer, shapes) || taken(longer, renamed));
-    if (const auto fault = package::nameFault(longer)) {
+    if (const auto fault = io::nameFault(longer)) {
       throw InputError({file, "an expression, with _captured since it names a shape too", fault->expected, fault->got,
                         "rename the shape or the expression"});
     }
@@ -253,7 +253,7 @@ RigReport rigCapture(const Capture& capture, const fs::path& template_directory,
                      const RigOptions& options, const Device& device, Progress& progress) {
   requireSaneOptions(options);
   inputsOf(capture, template_directory, options).requireApartFromFolder(package);
-  compress::StageClock clock;
+  io::StageClock clock;
   io::StagedDirectory staged(package, package::footprint(), &progress);
   RigInputs inputs = readInputs(capture, template_directory, options, progress);
   clock.book("reading meshes");

@@ -8,10 +8,11 @@
 
 #include "facezip/error.hpp"
 #include "facezip/version.hpp"
+#include "image/map_fields.hpp"
 #include "io/folder.hpp"
-#include "package/json_field.hpp"
-#include "package/package_json.hpp"
-#include "package/safe_names.hpp"
+#include "io/json_field.hpp"
+#include "io/quoted.hpp"
+#include "io/safe_names.hpp"
 
 namespace facezip {
 namespace rig {
@@ -67,9 +68,9 @@ namespace {
 /// M names in the order of the file, and where each stands in it.
 class ShapeNames {
  public:
-  explicit ShapeNames(const std::vector<package::JsonField>& fields) {
-    for (const package::JsonField& field : fields) {
-      const std::string name = package::fileSafeName(field);  // names an OBJ file
+  explicit ShapeNames(const std::vector<io::JsonField>& fields) {
+    for (const io::JsonField& field : fields) {
+      const std::string name = io::fileSafeName(field);  // names an OBJ file
       if (!index_.emplace(name, names_.size()).second) field.fail("unique names of shapes", field.got() + " twice");
       names_.push_back(name);
     }
@@ -77,9 +78,9 @@ class ShapeNames {
 
   const std::vector<std::string>& all() const { return names_; }
 
-  std::size_t at(const std::string& name, const package::JsonField& weights) const {
+  std::size_t at(const std::string& name, const io::JsonField& weights) const {
     const auto found = index_.find(name);
-    if (found == index_.end()) weights.fail("names of shapes", package::quoted(name));
+    if (found == index_.end()) weights.fail("names of shapes", io::quoted(name));
     return found->second;
   }
 
@@ -88,7 +89,7 @@ class ShapeNames {
   std::unordered_map<std::string, std::size_t> index_;
 };
 
-std::vector<double> parseWeights(const package::JsonField& field, const ShapeNames& shapes) {
+std::vector<double> parseWeights(const io::JsonField& field, const ShapeNames& shapes) {
   std::vector<double> weights(shapes.all().size(), 0.0);
   for (const auto& [shape, weight] : field.object().items()) {
     weights[shapes.at(shape, field)] = field[shape].number(0.0, 1.0);
@@ -107,8 +108,8 @@ void requireRigSize(std::size_t shapes, std::size_t expressions, const std::stri
 }
 
 Rig parseRig(const std::string& text, const std::string& file) {
-  const nlohmann::json document = package::parseJson(text, file);
-  const package::JsonField root(document, file, "");
+  const nlohmann::json document = io::parseJson(text, file);
+  const io::JsonField root(document, file, "");
   if (root["format"].text() != "facezip-rig") root["format"].fail("\"facezip-rig\"", root["format"].got());
   root["version"].integer(kRigVersion, kRigVersion);
   Rig found;
@@ -116,11 +117,11 @@ Rig parseRig(const std::string& text, const std::string& file) {
   found.skin_vertices = root["skin_vertices"].integer(1, 1 << 30);
   const ShapeNames shapes(root["shapes"].elements(1, kMostShapes));
   found.shapes = shapes.all();
-  const std::vector<package::JsonField> expressions = root["expressions"].elements(1, package::kMaxExpressions);
+  const std::vector<io::JsonField> expressions = root["expressions"].elements(1, image::kMaxExpressions);
   requireRigSize(found.shapes.size(), expressions.size(), file);
-  for (const package::JsonField& expression : expressions) {
-    found.package_expressions.push_back(package::fileSafeName(expression["name"]));
-    found.expressions.push_back(package::fileSafeName(expression["captured"]));
+  for (const io::JsonField& expression : expressions) {
+    found.package_expressions.push_back(io::fileSafeName(expression["name"]));
+    found.expressions.push_back(io::fileSafeName(expression["captured"]));
     found.weights.push_back(parseWeights(expression["weights"], shapes));
   }
   return found;

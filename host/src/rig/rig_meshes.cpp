@@ -5,13 +5,13 @@
 
 #include <algorithm>
 
-#include "compress/face.hpp"
-#include "export/gltf_scene.hpp"
-#include "export/map_roles.hpp"
+#include "face/face.hpp"
 #include "facezip/geometry/obj_io.hpp"
 #include "facezip/geometry/part_transfer.hpp"
 #include "facezip/package.hpp"
 #include "io/staged_directory.hpp"
+#include "mesh/gltf_scene.hpp"
+#include "mesh/map_roles.hpp"
 #include "package/guides.hpp"
 
 namespace facezip::rig {
@@ -58,8 +58,8 @@ geometry::TriangleMesh wholeNeutral(const geometry::TriangleMesh& skin, const ge
   return mesh;
 }
 
-std::string neutralOf(const std::vector<PackageMap>& maps, exporting::MapRole role) {
-  const std::vector<exporting::MapRole> roles = exporting::rolesOf(maps);
+std::string neutralOf(const std::vector<PackageMap>& maps, mesh::MapRole role) {
+  const std::vector<mesh::MapRole> roles = mesh::rolesOf(maps);
   const auto found = std::ranges::find(roles, role);
   if (found == roles.end()) return "";
   const std::string& file = maps[static_cast<std::size_t>(found - roles.begin())].neutral_file;
@@ -109,21 +109,21 @@ void writeFace(const std::filesystem::path& directory, const RigFace& face, cons
     shape.positions = face.shapes[m];
     geometry::writeObj(directory / "shapes" / (names[m] + ".obj"), shape);
   });
-  exporting::GltfScene scene;
+  mesh::GltfScene scene;
   scene.name = title;
   scene.neutral = face.neutral;
   for (std::size_t m = 0; m < names.size(); ++m) scene.targets.push_back({names[m], face.shapes[m]});
   scene.metres_per_unit = metres_per_unit;
-  scene.base_colour_texture = neutralOf(maps, exporting::MapRole::kAlbedo);
-  scene.normal_texture = neutralOf(maps, exporting::MapRole::kNormal);
-  exporting::recentre(scene);
-  exporting::writeGltf(directory / "rig.gltf", scene);
+  scene.base_colour_texture = neutralOf(maps, mesh::MapRole::kAlbedo);
+  scene.normal_texture = neutralOf(maps, mesh::MapRole::kNormal);
+  mesh::recentre(scene);
+  mesh::writeGltf(directory / "rig.gltf", scene);
 }
 
 void writePackageMesh(const std::filesystem::path& directory, const RigSubject& subject,
                       const geometry::ExampleRig& rig, const std::vector<std::string>& expressions,
                       const std::vector<std::string>& shapes, const std::string& title) {
-  exporting::GltfScene scene;
+  mesh::GltfScene scene;
   scene.name = title.empty() ? "face" : title;
   scene.neutral = subject.neutral;
   scene.metres_per_unit = geometry::metresPerUnit(subject.unit);
@@ -133,8 +133,8 @@ void writePackageMesh(const std::filesystem::path& directory, const RigSubject& 
   for (std::size_t m = 0; m < shapes.size(); ++m) {
     scene.targets.push_back({shapes[m], subject.neutral.positions + rig.shapes[m]});
   }
-  exporting::recentre(scene);
-  exporting::writeGltf(directory / package::kMeshFile, scene);
+  mesh::recentre(scene);
+  mesh::writeGltf(directory / package::kMeshFile, scene);
 }
 
 }  // namespace facezip::rig

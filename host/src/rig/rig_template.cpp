@@ -12,8 +12,8 @@
 #include "facezip/geometry/obj_io.hpp"
 #include "facezip/geometry/topology.hpp"
 #include "io/composed.hpp"
-#include "package/package_json.hpp"
-#include "package/safe_names.hpp"
+#include "io/quoted.hpp"
+#include "io/safe_names.hpp"
 
 namespace facezip::rig {
 namespace fs = std::filesystem;
@@ -27,7 +27,7 @@ std::vector<fs::path> templateFiles(const fs::path& directory) {
 }
 
 void requireName(const std::string& name, const fs::path& file) {
-  const auto fault = package::nameFault(name, ",=:");
+  const auto fault = io::nameFault(name, ",=:");
   if (fault) throw InputError({file.string(), "shape", fault->expected, fault->got, "rename the file"});
 }
 
@@ -50,7 +50,7 @@ TemplateFiles sortFiles(const fs::path& directory) {
     if (!isNeutralMesh(name)) {
       requireName(name, file);
       if (std::ranges::find(files.names, name) != files.names.end()) {
-        throw InputError({file.string(), "shape", "one file of each name", package::quoted(name) + " twice",
+        throw InputError({file.string(), "shape", "one file of each name", io::quoted(name) + " twice",
                           "remove one of those that are spelt alike"});
       }
       files.names.push_back(name);

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "compress/bands/map_set.hpp"
-#include "compress/face.hpp"
+#include "bands/map_set.hpp"
+#include "face/face.hpp"
 #include "facezip/capture.hpp"
 #include "facezip/package.hpp"
 #include "facezip/progress.hpp"

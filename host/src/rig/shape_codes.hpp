@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "compress/bands/map_set.hpp"
+#include "bands/map_set.hpp"
 #include "facezip/package.hpp"
 #include "facezip/progress.hpp"
 #include "rig/skin_features.hpp"
@@ -24,9 +24,9 @@ struct ShapeCodes {
 Eigen::MatrixXf decodeSet(const Package& package, int set);
 
 /// Solves the weight maps of the shapes in a set of `package`, which has those of the captured expressions. The codes
-/// are the captured ones', but where shapes go farther they reach up to twice as far (five times with the pseudo-inverse,
-/// then for every weight): a range that held whatever a bad solution makes would coarsen what was captured.
-/// map  one that the set is used by. Throws InputError, Cancelled.
+/// are the captured ones', but where shapes go farther they reach up to twice as far (five times with the
+/// pseudo-inverse, then for every weight): a range that held whatever a bad solution makes would coarsen what was
+/// captured. map  one that the set is used by. Throws InputError, Cancelled.
 ShapeCodes solveShapes(const Package& package, int set, const TextureSolver& solver, const SkinFeatures& features,
                        const compress::GridMap& map, Progress& progress);
 

@@ -1,7 +1,7 @@
 // strain_codes.hpp - the weight maps of a rig's shapes in a package of compress and stretch maps.
 #pragma once
 
-#include "compress/bands/map_set.hpp"
+#include "bands/map_set.hpp"
 #include "facezip/geometry/example_rig.hpp"
 #include "facezip/geometry/mesh.hpp"
 #include "facezip/package.hpp"

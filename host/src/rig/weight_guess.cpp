@@ -12,9 +12,9 @@
 #include "blend/shape_names.hpp"
 #include "facezip/error.hpp"
 #include "facezip/nearest_names.hpp"
+#include "io/json_field.hpp"
+#include "io/quoted.hpp"
 #include "io/read_file.hpp"
-#include "package/json_field.hpp"
-#include "package/package_json.hpp"
 
 namespace facezip::rig {
 namespace {
@@ -39,7 +39,7 @@ class Guess {
   Eigen::Index expression(const std::string& name, const std::string& item) {
     const Eigen::Index row = indexIn(expressions_, name, item, "an expression of the capture");
     if (seen_[static_cast<std::size_t>(row)]) {
-      throw InputError({file_, item, "each expression once", package::quoted(name) + " twice", ""});
+      throw InputError({file_, item, "each expression once", io::quoted(name) + " twice", ""});
     }
     seen_[static_cast<std::size_t>(row)] = true;
     return row;
@@ -68,7 +68,7 @@ class Guess {
   Eigen::Index indexIn(const std::vector<std::string>& names, const std::string& name, const std::string& item,
                        const std::string& expected) const {
     if (const auto found = blend::findName(name, names)) return static_cast<Eigen::Index>(*found);
-    throw InputError({file_, item, expected, package::quoted(name),
+    throw InputError({file_, item, expected, io::quoted(name),
                       fmt::format("the nearest is {}", nearestNames(name, names, 1).front())});
   }
 
@@ -102,11 +102,11 @@ void readCsv(const std::string& text, Guess& guess) {
       for (std::size_t i = 1; i < fields.size(); ++i) {
         const Eigen::Index shape = guess.shape(fields[i], where);
         if (std::find(columns.begin(), columns.end(), shape) != columns.end()) {
-          guess.fail(where, "each shape once", package::quoted(fields[i]) + " twice");
+          guess.fail(where, "each shape once", io::quoted(fields[i]) + " twice");
         }
         columns.push_back(shape);
       }
-      if (columns.empty()) guess.fail(where, "a header: expression, then names of shapes", package::quoted(line));
+      if (columns.empty()) guess.fail(where, "a header: expression, then names of shapes", io::quoted(line));
       continue;
     }
     if (fields.size() != columns.size() + 1) {
@@ -116,7 +116,7 @@ void readCsv(const std::string& text, Guess& guess) {
     for (std::size_t i = 0; i < columns.size(); ++i) {
       const std::string item = fmt::format("{}, column {}", where, i + 2);
       const std::optional<float> weight = blend::parseNumber(fields[i + 1]);
-      if (!weight) guess.fail(item, "a weight from 0 to 1", package::quoted(fields[i + 1]));
+      if (!weight) guess.fail(item, "a weight from 0 to 1", io::quoted(fields[i + 1]));
       guess.set(row, columns[i], *weight, item, fields[i + 1]);
     }
   }
@@ -145,7 +145,7 @@ Eigen::MatrixXd readGuess(const std::filesystem::path& file, const std::vector<s
   const std::string text = io::readFile(file, "weights of the expressions (.csv or .json)");
   Guess guess(file, expressions, shapes);
   if (file.extension() == ".json") {
-    readJson(package::parseJson(text, file.string()), guess);
+    readJson(io::parseJson(text, file.string()), guess);
   } else if (file.extension() == ".csv") {
     readCsv(text, guess);
   } else {

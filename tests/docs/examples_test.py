@@ -76,7 +76,7 @@ def run_exports(package, repository, work, environment):
 
 def run_programs(session, repository, runtime, programs, environment):
     """Of docs/examples: the frames of C and of Python must be the same."""
-    weights = ["smile_open=0.7", "AU26=0.2"]
+    weights = ["smile_open=0.7", "jaw_open_wide=0.2"]
     call = {"cwd": session, "check": True}
     subprocess.run([programs / "compress_capture", "capture", "small.facezip", "0.1"], env=environment, **call)
     subprocess.run([programs / "blend_frame", "face.facezip", "c.ppm", *weights], env=environment, **call)

@@ -180,16 +180,6 @@ TEST(BlockPackages, KeepMapsOfMoreBitsAsImages) {
   EXPECT_THAT(progress.all, testing::Contains(testing::HasSubstr("displacement")));
 }
 
-TEST(BlockPackages, AreNotChosenByTargetsWhichEstimateImages) {
-  const test::TemporaryDirectory folder;
-  test::writeSmallCapture(folder / "c", {.expressions = 6});
-  Progress progress;
-  CompressOptions options = smallOptions(BlockFormat::kBc7);
-  options.target_rmse = 1.0;
-  EXPECT_THROW(compressCapture(openCapture(folder / "c"), folder / "p", options, testDevice(), progress), InputError);
-  EXPECT_FALSE(fs::exists(folder / "p"));
-}
-
 TEST(BlockPackages, OfTooFewChannelsAreRefusedBeforeTheWork) {
   const test::TemporaryDirectory folder;
   test::writeSmallCapture(folder / "c", {.expressions = 6});

@@ -409,7 +409,7 @@ TEST_F(Choosing, WhatCannotBeReachedIsRefused) {
     EXPECT_THAT(unreachable, HasSubstr(part));
   }
   const std::string small = failure(budget(1000));
-  for (const char* part : {"--budget", "expected at least 13", "1 difference texture", "got 1000"}) {
+  for (const char* part : {"--budget", "expected at least 13", "1 difference with weights at 1/32", "got 1000"}) {
     EXPECT_THAT(small, HasSubstr(part));
   }
   CompressOptions both = target(1.5);

@@ -3,6 +3,7 @@
 #   cmake -DSOURCE_DIR=DIR -DCOMPILER=CXX -DINCLUDE_DIRECTORIES=FILE "-DROOMS=io;device;..." -P room_order.cmake
 # FILE has a line for each room: name=dir|dir|...
 
+cmake_minimum_required(VERSION 3.25)
 file(GLOB folders RELATIVE ${SOURCE_DIR}/host/src ${SOURCE_DIR}/host/src/*)
 list(REMOVE_ITEM folders runtime)  # a library of its own: the C interface
 foreach(folder ${folders})

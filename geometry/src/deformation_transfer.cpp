@@ -109,6 +109,19 @@ Eigen::MatrixXd solveShapes(const ScreenedPoisson& solver, const Eigen::MatrixXd
   return shapes;
 }
 
+std::vector<Eigen::MatrixX3d> displacedShapes(const Eigen::MatrixX3d& source_neutral,
+                                              const std::vector<Eigen::MatrixX3d>& source_shapes,
+                                              const Eigen::MatrixX3d& target_neutral) {
+  const Similarity place = fitSimilarity(source_neutral, target_neutral);
+  std::vector<Eigen::MatrixX3d> shapes;
+  for (const Eigen::MatrixX3d& shape : source_shapes) {
+    const Eigen::MatrixX3d moved = shape - source_neutral;
+    const Eigen::VectorXd moving = 1.0 - stillVertices(source_neutral, moved).array();
+    shapes.push_back(moving.asDiagonal() * place.applyToVectors(moved));
+  }
+  return shapes;
+}
+
 std::vector<Eigen::MatrixX3d> transferShapes(const Eigen::MatrixX3d& source_neutral,
                                              const std::vector<Eigen::MatrixX3d>& source_shapes,
                                              const Eigen::MatrixX3d& target_neutral,

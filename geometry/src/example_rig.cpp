@@ -67,17 +67,6 @@ struct Start {
   double rigid_share = 0.0;
 };
 
-std::vector<Eigen::MatrixX3d> displacedShapes(const RigProblem& problem) {
-  const Similarity place = fitSimilarity(problem.template_neutral, problem.neutral);
-  std::vector<Eigen::MatrixX3d> shapes;
-  for (const Eigen::MatrixX3d& shape : problem.template_shapes) {
-    const Eigen::MatrixX3d moved = shape - problem.template_neutral;
-    const Eigen::VectorXd moving = 1.0 - stillVertices(problem.template_neutral, moved).array();
-    shapes.push_back(moving.asDiagonal() * place.applyToVectors(moved));
-  }
-  return shapes;
-}
-
 /// The bounded fit of shapes as they are.
 Start bestWeights(const RigProblem& problem, std::vector<Eigen::MatrixX3d> shapes, bool head_motion) {
   const WeightSolver rig(problem.neutral, shapes);
@@ -322,7 +311,9 @@ ExampleRig fitExampleRig(const RigProblem& problem, const ExampleRigOptions& opt
   Start gradients = bestWeights(
       problem, transferShapes(problem.template_neutral, problem.template_shapes, problem.neutral, problem.triangles),
       options.head_motion);
-  Start displacements = bestWeights(problem, displacedShapes(problem), options.head_motion);
+  Start displacements =
+      bestWeights(problem, displacedShapes(problem.template_neutral, problem.template_shapes, problem.neutral),
+                  options.head_motion);
   ExampleRig rig;
   rig.gradients_rms = gradients.rms;
   rig.displacements_rms = displacements.rms;

@@ -90,7 +90,7 @@ void addRigCommand(CLI::App& app, const CommonOptions& common) {
     if (damping->count() > 0) options.texture_damping = arguments->texture_damping;
     TerminalProgress progress(common.quiet);
     const CancelOnSignal cancel(progress);
-    const Capture capture = openCapture(arguments->capture, arguments->maps, &progress);
+    const Capture capture = openCapture(arguments->capture, arguments->maps, &progress, NeutralAlone::kAllowed);
     requireReportPlace(
         arguments->report,
         inputsOf(capture, arguments->rig_template, options).add(arguments->output, "the package that is written"));

@@ -21,6 +21,8 @@ void addViewCommand(CLI::App& app, const CommonOptions& common);
 void addAlignCommand(CLI::App& app, const CommonOptions& common);
 void addRegisterCommand(CLI::App& app, const CommonOptions& common);
 void addRigCommand(CLI::App& app, const CommonOptions& common);
+void addTrainCommand(CLI::App& app, const CommonOptions& common);
+void addGenerateCommand(CLI::App& app, const CommonOptions& common);
 void addSolveWeightsCommand(CLI::App& app, const CommonOptions& common);
 void addInfoCommand(CLI::App& app, const CommonOptions& common);
 void addDevicesCommand(CLI::App& app, const CommonOptions& common);

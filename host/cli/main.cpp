@@ -106,6 +106,8 @@ int main(int argc, char** argv) {
   addAlignCommand(app, common);
   addRegisterCommand(app, common);
   addRigCommand(app, common);
+  addTrainCommand(app, common);
+  addGenerateCommand(app, common);
   addSolveWeightsCommand(app, common);
   addInfoCommand(app, common);
   addDevicesCommand(app, common);

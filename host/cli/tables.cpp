@@ -1,6 +1,7 @@
 #include "tables.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
@@ -192,9 +193,10 @@ void printEvaluation(const Evaluation& evaluation) {
   printSeconds(evaluation.seconds);
 }
 
-void printRigReport(const RigReport& report) {
-  say("{} shapes on {} vertices ({} of the skin), from {} expressions; transferred by {}\n", report.shapes.size(),
-      report.vertices, report.skin_vertices, report.expressions.size(), report.transfer);
+namespace {
+
+/// Of a rig that was fitted to expressions: how far it is from them.
+void printRigFit(const RigReport& report) {
   say("\n{:<34}{:>22}{:>32}\n", "distance to the captured mesh, mm", "rig", "template alone");
   say("{:<34}{:>10}{:>10}{:>10}{:>12}{:>10}{:>10}\n", "expression", "mean", "99th pct", "largest", "mean", "99th pct",
       "largest");
@@ -233,9 +235,43 @@ void printRigReport(const RigReport& report) {
         report.left_out_rmse, report.left_out_nothing);
   }
   say("\n");
+}
+
+}  // namespace
+
+void printRigReport(const RigReport& report) {
+  say("{} shapes on {} vertices ({} of the skin), from {} expressions; transferred by {}\n", report.shapes.size(),
+      report.vertices, report.skin_vertices, report.expressions.size(), report.transfer);
+  if (!report.expressions.empty()) printRigFit(report);
   for (const auto& [map, rmse] : report.compress.rmse) say("{}: RMSE {:.3f} as compressed (0..255)\n", map, rmse);
   say("\n");
   printSeconds(report.seconds);
+}
+
+void printTrainReport(const TrainReport& report) {
+  say("{} subjects, {} expressions, {} shapes on {} vertices\n", report.subjects, report.expressions.size(),
+      report.shapes.size(), report.skin_vertices);
+  say("expressions of subjects left out: {:.3f} mm by the template, {:.3f} mm predicted (rms; {} components, softness "
+      "{:g}, shared {:g}, noise {:g})\n",
+      report.template_mm, report.left_out_mm, report.components, report.softness, report.shared, report.noise);
+  for (const LearnedTexture& texture : report.textures) {
+    say("{}: changes of the library's textures err by {:.2f} % of the map's mean, without a model by {:.2f} %\n",
+        texture.map, texture.error, texture.nothing);
+  }
+  say("model: {}\n\n", formatMegabytes(report.model_bytes));
+  printSeconds(report.seconds);
+}
+
+void printGenerateReport(const GenerateReport& report) {
+  say("{} shapes on {} vertices ({} of the skin)\n", report.rig.shapes.size(), report.rig.vertices,
+      report.rig.skin_vertices);
+  say("the neutral lies {:.2f} times as far from the model's mean as is usual\n", report.strangeness);
+  if (!report.maps.empty()) say("textures of every shape: {}\n", fmt::join(report.maps, ", "));
+  for (const auto& [map, rmse] : report.rig.compress.rmse) {
+    say("{}: RMSE {:.3f} as compressed (0..255)\n", map, rmse);
+  }
+  say("\n");
+  printSeconds(report.rig.seconds);
 }
 
 void printRegistrationReport(const RegistrationReport& report) {

@@ -4,6 +4,7 @@
 #include "facezip/alignment.hpp"
 #include "facezip/compress.hpp"
 #include "facezip/evaluate.hpp"
+#include "facezip/learn.hpp"
 #include "facezip/registration.hpp"
 #include "facezip/rig.hpp"
 
@@ -18,6 +19,10 @@ void printRegistrationReport(const RegistrationReport& report);
 void printAlignmentReport(const AlignmentReport& report);
 /// Residuals of each expression beside the template's, convergence, textures, times.
 void printRigReport(const RigReport& report);
+/// What was chosen for the regression, how well shapes and textures are predicted, times.
+void printTrainReport(const TrainReport& report);
+/// How usual the neutral is, which maps were generated, times.
+void printGenerateReport(const GenerateReport& report);
 /// Residuals over the frames, and frames a second.
 void printSolvedClip(const SolvedClip& clip);
 

@@ -20,7 +20,7 @@ WRAPPER = """#!/bin/sh
 # Less work, and no other output.
 case $1 in
   synth) exec "$FACEZIP" "$@" --resolution 128 --expressions 12 ;;
-  compress | rig) exec "$FACEZIP" "$@" --restarts 2 --cluster-restarts 2 ;;
+  compress | rig | generate) exec "$FACEZIP" "$@" --restarts 2 --cluster-restarts 2 ;;
   view) exec "$FACEZIP" "$@" --port 0 ;;
 esac
 exec "$FACEZIP" "$@"

@@ -14,7 +14,9 @@
 #include "facezip/geometry/obj_io.hpp"
 #include "facezip/package.hpp"
 #include "file_contents.hpp"
+#include "image/image_file.hpp"
 #include "io/staged_directory.hpp"
+#include "notes.hpp"
 #include "rig/shape_codes.hpp"
 #include "rig/texture_solve.hpp"
 #include "rig/weight_guess.hpp"
@@ -94,6 +96,71 @@ TEST_F(RigTest, ABudgetHoldsTheWeightsOfTheShapes) {
   ASSERT_TRUE(report.compress.rate);
   EXPECT_LT(Package::open(folder() / "small").bytesInMemory(), whole);
   EXPECT_EQ(Package::open(folder() / "small").bytesInMemory(), report.compress.rate->bytes);
+}
+
+/// The capture's neutral alone.
+fs::path neutralAlone(const fs::path& folder) {
+  fs::create_directories(folder / "neutral/albedo");
+  fs::copy_file(folder / "capture/neutral.obj", folder / "neutral/neutral.obj");
+  fs::copy_file(folder / "capture/albedo/neutral.png", folder / "neutral/albedo/neutral.png");
+  return folder / "neutral";
+}
+
+TEST(RigOfANeutralAlone, HasTheTemplatesShapesAndOneTextureOfNothing) {
+  const test::TemporaryDirectory folder;
+  test::writeRigCapture(folder.path());
+  const Capture capture = openCapture(neutralAlone(folder.path()), {}, nullptr, NeutralAlone::kAllowed);
+  EXPECT_THROW(openCapture(capture.directory), InputError);
+  test::Notes progress;
+  RigOptions options = quickOptions();
+  options.fit.transfer = geometry::ShapeTransfer::kDisplacements;
+  const RigReport report =
+      rigCapture(capture, folder / "template", folder / "face", options, test::testDevice(), progress);
+  EXPECT_THAT(progress.all, testing::Contains(testing::HasSubstr("the template has no textures")));
+  EXPECT_TRUE(report.expressions.empty());
+  const Package package = Package::open(folder / "face");
+  EXPECT_THAT(package.expressions(), testing::ElementsAre("bumpA", "bumpB", "bumpC"));
+  EXPECT_EQ(package.differences(), 1);
+  const Rig rig = openRig(package);
+  EXPECT_TRUE(rig.weights.empty());
+  EXPECT_EQ(rig.shapes.size(), 3u);
+  const geometry::TriangleMesh neutral = geometry::readObj(folder / "face/shapes/neutral.obj");
+  const geometry::TriangleMesh shape = geometry::readObj(folder / "face/shapes/bumpB.obj");
+  const Eigen::MatrixX3d moved = shape.positions - neutral.positions;
+  EXPECT_GT(moved.norm(), 0.8 * test::templateShape(1).norm());
+  EXPECT_LT((moved - test::templateShape(1)).norm(), 0.2 * moved.norm());  // the patches differ in width
+  // It poses meshes like any rig.
+  const SolvedClip clip = solveWeights(folder / "face", {folder / "face/shapes/bumpC.obj"}, {}, progress);
+  EXPECT_NEAR(clip.weights[0][2], 1.0, 1e-3);
+}
+
+TEST(RigOfANeutralAlone, GetsTheTemplatesTextures) {
+  const test::TemporaryDirectory folder;
+  test::writeRigCapture(folder.path());
+  const Capture capture = openCapture(neutralAlone(folder.path()), {}, nullptr, NeutralAlone::kAllowed);
+  // Half the subject's size, and of one shape alone: brighter by 40 on the left.
+  const image::ImageShape shape{32, 32, 3, image::SampleType::kUint8};
+  fs::create_directories(folder / "template/albedo");
+  image::writeImage(folder / "template/albedo/neutral.png",
+                    test::makeImage(shape, [](int, int, int) { return 100.0; }));
+  image::writeImage(folder / "template/albedo/bumpA.png",
+                    test::makeImage(shape, [](int x, int, int) { return x < 16 ? 140.0 : 100.0; }));
+  Progress progress;
+  rigCapture(capture, folder / "template", folder / "face", quickOptions(), test::testDevice(), progress);
+  const Package package = Package::open(folder / "face");
+  Blender blender(package, test::testDevice());
+  const auto changeAt = [&](const std::string& name, std::size_t x) {
+    std::vector<std::byte> neutral(package.maps()[0].frameBytes()), frame(neutral.size());
+    blender.setWeights(weightsByName(package, {}));
+    blender.blend(0, neutral);
+    blender.setWeights(weightsByName(package, {{name, 1.0f}}));
+    blender.blend(0, frame);
+    const std::size_t texel = (32 * 64 + x) * 3;
+    return std::to_integer<int>(frame[texel]) - std::to_integer<int>(neutral[texel]);
+  };
+  EXPECT_NEAR(changeAt("bumpA", 20), 40, 2);
+  EXPECT_NEAR(changeAt("bumpA", 44), 0, 2);
+  EXPECT_NEAR(changeAt("bumpB", 20), 0, 2);
 }
 
 TEST_F(RigTest, ShapesAreTheSubjectsAndWeightsAreRecovered) {

@@ -35,17 +35,21 @@ struct Capture {
   std::optional<std::filesystem::path> importance;       ///< painted image of where errors matter more
 };
 
+/// Whether a capture may be a neutral alone.
+enum class NeutralAlone { kRefused, kAllowed };
+
 /// Finds what is in `directory` (layout in docs/capture_format.md). capture.json, where present, decides; what it
 /// leaves out is found by name: MAP/neutral.EXT and MAP/NAME.EXT for textures, neutral.obj, expressions/NAME.obj,
 /// face_region.txt, coverage.png, importance.png. Expressions come in the order of capture.json, else by name.
 /// map_names  maps to take, in this order; empty: all
 /// progress   notes where meshes of expressions were found if not in expressions/, OBJ files that match no expression,
 ///            expressions without a mesh where others have one, and that there is no mesh at all; may be null
+/// neutral_alone  whether there may be no expression (N = 0)
 /// Throws InputError: no directory, one that cannot be read, no neutral mesh, no map, a map without neutral, an
 /// expression that one map has and another lacks, two expressions with the same name, no expression, a name that a
 /// package cannot hold, malformed capture.json.
 Capture openCapture(const std::filesystem::path& directory, const std::vector<std::string>& map_names = {},
-                    Progress* progress = nullptr);
+                    Progress* progress = nullptr, NeutralAlone neutral_alone = NeutralAlone::kRefused);
 
 /// The capture's directory and every file that it names, wherever that lies.
 ProtectedPaths inputsOf(const Capture& capture);

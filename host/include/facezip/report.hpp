@@ -7,6 +7,7 @@
 #include "facezip/alignment.hpp"
 #include "facezip/compress.hpp"
 #include "facezip/evaluate.hpp"
+#include "facezip/learn.hpp"
 #include "facezip/registration.hpp"
 #include "facezip/rig.hpp"
 
@@ -19,6 +20,8 @@ std::string toJson(const RegistrationReport& report);
 std::string toJson(const AlignmentReport& report);
 std::string toJson(const RigReport& report);
 std::string toJson(const SolvedClip& clip);
+std::string toJson(const TrainReport& report);
+std::string toJson(const GenerateReport& report);
 
 /// Throws OutputError if a report could not be written to `file`, as far as can be told: to be asked before the work
 /// that it is to tell of. Nothing for an empty name.

@@ -62,7 +62,7 @@ struct RigHeadMotion {
 };
 
 struct RigReport {
-  std::vector<std::string> expressions;  ///< N, as the capture names them
+  std::vector<std::string> expressions;  ///< N, as the capture names them; none of a neutral alone
   /// N: as the package names them: `NAME_captured` where a shape has the name already.
   std::vector<std::string> package_expressions;
   std::vector<std::string> shapes;              ///< M
@@ -92,7 +92,8 @@ struct RigReport {
 
 /// Compresses `capture` as compressCapture() does, fits a rig of the template's shapes to its expressions, and writes
 /// both as one package: package.json and textures that blend by the captured names and by the shapes', shapes/NAME.obj,
-/// rig.json, rig.gltf (docs/rig.md). The package appears whole or not at all.
+/// rig.json, rig.gltf (docs/rig.md). Of a neutral alone (NeutralAlone) it is the template's shapes on the subject, with
+/// the template's textures where it has any. The package appears whole or not at all.
 /// template_directory  neutral.obj (or generic_neutral.obj) and one OBJ for each shape, of the capture's topology; its
 ///                     mesh may go on with vertices and triangles of parts beyond the captured skin
 /// Throws InputError (the capture, the template, the guess, an option), DeviceError, OutputError, SolverError,

@@ -38,7 +38,7 @@ void requireName(const std::string& name, const char* item, const fs::path& file
 
 /// The expressions' names: capture.json's order, else every image name that any map has, sorted.
 std::vector<std::string> expressionNames(const fs::path& directory, const CaptureJson& description,
-                                         const std::map<std::string, FoundMap>& maps) {
+                                         const std::map<std::string, FoundMap>& maps, NeutralAlone neutral_alone) {
   std::vector<std::string> names = description.expressions;
   std::map<std::string, fs::path> found;  // with the first image of each
   if (names.empty()) {
@@ -50,9 +50,9 @@ std::vector<std::string> expressionNames(const fs::path& directory, const Captur
   for (const std::string& name : names) {  // commas and equals signs part names and weights on the command line
     requireName(name, "expression", found.contains(name) ? found.at(name) : directory / kCaptureFile, ",=");
   }
-  if (names.empty()) {
+  if (names.empty() && neutral_alone == NeutralAlone::kRefused) {
     throw InputError({directory.string(), "expressions", "at least one expression beside the neutral", "none",
-                      "add MAP/NAME.png for every expression"});
+                      "add MAP/NAME.png for every expression; `facezip rig` takes a neutral alone"});
   }
   return names;
 }
@@ -123,7 +123,8 @@ void requireKnownExpressions(const std::string& map, const CaptureJson& descript
 
 }  // namespace
 
-Capture openCapture(const fs::path& directory, const std::vector<std::string>& map_names, Progress* progress) {
+Capture openCapture(const fs::path& directory, const std::vector<std::string>& map_names, Progress* progress,
+                    NeutralAlone neutral_alone) {
   std::error_code error;
   if (!fs::is_directory(directory, error)) {
     throw InputError({directory.string(), "", "a capture directory",
@@ -149,7 +150,7 @@ Capture openCapture(const fs::path& directory, const std::vector<std::string>& m
     requireName(name, "map", used[name].source);
   }
   requireTextures(used);
-  capture.expressions = expressionNames(directory, description, used);
+  capture.expressions = expressionNames(directory, description, used, neutral_alone);
   for (const std::string& name : chosen) requireKnownExpressions(name, description, capture.expressions, directory);
   for (const std::string& name : chosen) capture.maps.push_back(makeMap(name, used, capture.expressions));
   for (const auto& [name, file] : description.expression_meshes) {

@@ -162,7 +162,8 @@ std::vector<fs::path> findExpressionMeshes(const fs::path& capture, const Captur
   }
   if (progress == nullptr) return taken;
   noteUnmatched(folder, meshes, description.neutral, expressions, taken, *progress);
-  if (std::all_of(taken.begin(), taken.end(), [](const fs::path& mesh) { return mesh.empty(); })) {
+  const bool none = std::all_of(taken.begin(), taken.end(), [](const fs::path& mesh) { return mesh.empty(); });
+  if (none && !expressions.empty()) {
     noteNone(capture, others, *progress);
   }
   return taken;

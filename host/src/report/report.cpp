@@ -250,6 +250,39 @@ std::string toJson(const SolvedClip& clip) {
   return object.dump(2) + "\n";
 }
 
+std::string toJson(const TrainReport& report) {
+  json object = {{"facezip_report", "train"},
+                 {"version", kReportVersion},
+                 {"subjects", report.subjects},
+                 {"expressions", report.expressions},
+                 {"shapes", report.shapes},
+                 {"skin_vertices", report.skin_vertices},
+                 {"regression",
+                  {{"components", report.components},
+                   {"softness", report.softness},
+                   {"shared", report.shared},
+                   {"noise", report.noise},
+                   {"left_out_mm", report.left_out_mm},
+                   {"template_mm", report.template_mm}}},
+                 {"textures", json::array()},
+                 {"model_bytes", report.model_bytes},
+                 {"seconds", secondsJson(report.seconds)}};
+  for (const LearnedTexture& texture : report.textures) {
+    object["textures"].push_back(
+        {{"map", texture.map}, {"error_percent", texture.error}, {"no_change_percent", texture.nothing}});
+  }
+  return object.dump(2) + "\n";
+}
+
+std::string toJson(const GenerateReport& report) {
+  json object = json::parse(toJson(report.rig));
+  object["facezip_report"] = "generate";
+  object["strangeness"] = report.strangeness;
+  object["maps"] = report.maps;
+  object["left_alone"] = report.left_alone;
+  return object.dump(2) + "\n";
+}
+
 void requireReportPlace(const std::filesystem::path& file, const ProtectedPaths& taken, const std::string& option) {
   namespace fs = std::filesystem;
   if (file.empty()) return;

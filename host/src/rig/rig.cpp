@@ -18,7 +18,9 @@
 #include "rig/rig_json.hpp"
 #include "rig/rig_meshes.hpp"
 #include "rig/rig_weights.hpp"
+#include "rig/shape_package.hpp"
 #include "rig/strain_codes.hpp"
+#include "rig/template_textures.hpp"
 #include "rig/weight_guess.hpp"
 
 namespace facezip {
@@ -241,6 +243,59 @@ void writeMeshes(const RigInputs& inputs, const RigFace& face, const geometry::E
   if (package_mesh) writePackageMesh(directory, inputs.subject, rig, inputs.package_expressions, shapes, title);
 }
 
+/// The template's shapes on a neutral that no expression was captured of.
+geometry::ExampleRig transferRig(const ShapedFace& face, geometry::ShapeTransfer transfer) {
+  const Eigen::MatrixX3d& neutral = face.subject.neutral.positions;
+  const Eigen::Index skin = neutral.rows();
+  const Eigen::MatrixX3d template_neutral = face.rig_template.neutral.positions.topRows(skin);
+  std::vector<Eigen::MatrixX3d> template_shapes;
+  for (const Eigen::MatrixX3d& shape : face.rig_template.shapes) template_shapes.emplace_back(shape.topRows(skin));
+  geometry::ExampleRig rig;
+  // Nothing tells which of the two is the better: gradients keep folds and lids together on a head of other
+  // proportions.
+  const bool displace = transfer == geometry::ShapeTransfer::kDisplacements;
+  rig.transfer = displace ? geometry::ShapeTransfer::kDisplacements : geometry::ShapeTransfer::kGradients;
+  rig.transferred =
+      displace ? geometry::displacedShapes(template_neutral, template_shapes, neutral)
+               : geometry::transferShapes(template_neutral, template_shapes, neutral, face.subject.neutral.triangles);
+  rig.shapes = rig.transferred;
+  return rig;
+}
+
+/// rigCapture() of a neutral alone.
+RigReport rigNeutral(const Capture& capture, const fs::path& template_directory, const fs::path& package,
+                     const RigOptions& options, const Device& device, Progress& progress) {
+  if (!options.guess.empty()) {
+    throw InputError({options.guess.string(), "weights of the expressions", "a capture with expressions",
+                      "a neutral alone", "leave --weights out"});
+  }
+  io::StageClock clock;
+  io::StagedDirectory staged(package, package::footprint(), &progress);
+  RigInputs inputs = readInputs(capture, template_directory, options, progress);
+  clock.book("reading meshes");
+
+  progress.stage("transferring the template's shapes", 0);
+  ShapedFace face{std::move(inputs.rig_template), std::move(inputs.subject), {}};
+  face.rig = transferRig(face, options.fit.transfer);
+  clock.book("transferring shapes");
+
+  const fs::path scratch = staged.path() / ".textures";  // a name that no map has
+  const std::vector<CaptureMap> textures =
+      transferTextures(capture.maps, template_directory, face.rig_template.names, scratch, progress);
+  clock.book("transferring textures");
+
+  RigReport report;
+  report.transfer =
+      face.rig.transfer == geometry::ShapeTransfer::kGradients ? "deformation gradients" : "displacements";
+  writeShapePackage(capture, face, textures, options.compress, staged.path(), device, progress, report);
+  fs::remove_all(scratch);
+  clock.book("compressing");
+  staged.commit();
+  clock.book("publishing");
+  report.seconds = clock.seconds();
+  return report;
+}
+
 }  // namespace
 
 ProtectedPaths inputsOf(const Capture& capture, const fs::path& template_directory, const RigOptions& options) {
@@ -253,6 +308,7 @@ RigReport rigCapture(const Capture& capture, const fs::path& template_directory,
                      const RigOptions& options, const Device& device, Progress& progress) {
   requireSaneOptions(options);
   inputsOf(capture, template_directory, options).requireApartFromFolder(package);
+  if (capture.expressions.empty()) return rigNeutral(capture, template_directory, package, options, device, progress);
   io::StageClock clock;
   io::StagedDirectory staged(package, package::footprint(), &progress);
   RigInputs inputs = readInputs(capture, template_directory, options, progress);

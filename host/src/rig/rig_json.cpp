@@ -117,7 +117,7 @@ Rig parseRig(const std::string& text, const std::string& file) {
   found.skin_vertices = root["skin_vertices"].integer(1, 1 << 30);
   const ShapeNames shapes(root["shapes"].elements(1, kMostShapes));
   found.shapes = shapes.all();
-  const std::vector<io::JsonField> expressions = root["expressions"].elements(1, image::kMaxExpressions);
+  const std::vector<io::JsonField> expressions = root["expressions"].elements(0, image::kMaxExpressions);
   requireRigSize(found.shapes.size(), expressions.size(), file);
   for (const io::JsonField& expression : expressions) {
     found.package_expressions.push_back(io::fileSafeName(expression["name"]));

@@ -57,4 +57,10 @@ std::vector<Eigen::MatrixX3d> transferShapes(const Eigen::MatrixX3d& source_neut
                                              const std::vector<Eigen::MatrixX3d>& source_shapes,
                                              const Eigen::MatrixX3d& target_neutral, const Eigen::MatrixX3i& triangles);
 
+/// The same by displacements: a vertex goes as far as the source's, turned and scaled as the whole neutral is. What a
+/// shape does not move (stillVertices()) stays put.
+std::vector<Eigen::MatrixX3d> displacedShapes(const Eigen::MatrixX3d& source_neutral,
+                                              const std::vector<Eigen::MatrixX3d>& source_shapes,
+                                              const Eigen::MatrixX3d& target_neutral);
+
 }  // namespace facezip::geometry

@@ -25,6 +25,7 @@ class ScanSet {
  public:
   static constexpr int kGrid = 110;     ///< samples of the layout along each axis, the scans' vertices
   static constexpr int kTexture = 256;  ///< side of the scans' textures
+  static constexpr double kLight[3] = {1.06, 0.97, 0.9};  ///< of the expression's scan beside the neutral's
 
   ScanSet() : shape_(5), head_(shape_), template_shape_(6), template_head_(template_shape_) {
     for (int v = 40; v < head_.mesh.positions.rows(); v += 197) landmarks_.push_back(v);
@@ -35,9 +36,10 @@ class ScanSet {
   /// In metres. amount  of jawOpen and a brow, 0: the neutral
   Eigen::MatrixX3d truth(double amount) const { return posed(head_, shape_, amount); }
 
-  /// What the skin looks like at a place of the template's layout, 0..255: grey, with features some texels wide.
+  /// What the skin looks like at a place of the template's layout, 0..255: grey, spots and pores some texels wide.
   static double skin(double u, double v) {
-    return 128.0 + 50.0 * std::sin(40.0 * u + 9.0 * v) + 50.0 * std::cos(37.0 * v - 7.0 * u);
+    return 128.0 + 44.0 * std::sin(40.0 * u + 9.0 * v) + 44.0 * std::cos(37.0 * v - 7.0 * u) +
+           14.0 * std::sin(150.0 * u + 40.0 * v) * std::cos(130.0 * v - 50.0 * u);
   }
   /// The subject's layout turned by a quarter.
   static Eigen::RowVector2d scanUv(double u, double v) { return {v, 1.0 - u}; }
@@ -124,9 +126,9 @@ class ScanSet {
     geometry::writeObj(mesh_file, scan);
     io::writeTextFile(folder / "scans" / (name + ".mtl"), "newmtl skin\nmap_Kd C:\\scans\\" + name + ".png\n");
     prepend(mesh_file, "mtllib " + name + ".mtl\nusemtl skin\n");
-    const auto texel = [](int x, int y, int) {
+    const auto texel = [amount](int x, int y, int channel) {
       const double s = (x + 0.5) / kTexture, t = 1.0 - (y + 0.5) / kTexture;  // of the scan: s = v, t = 1 - u
-      return skin(1.0 - t, s);
+      return (amount == 0.0 ? 1.0 : kLight[channel]) * skin(1.0 - t, s);
     };
     image::writeImage(folder / "scans" / (name + ".png"),
                       makeImage({kTexture, kTexture, 3, image::SampleType::kUint8}, texel));

@@ -19,14 +19,16 @@ void addRegisterCommand(CLI::App& app, const CommonOptions& common) {
     std::string landmarks;
     std::string device = "auto";
     std::string report;
+    std::string last_step = nameOf(RegistrationStep::kFlow);
     RegistrationOptions options;
   };
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command =
       app.add_subcommand("register", "Makes a capture of raw scans: a template bent onto each, textures in its layout");
   command
-      ->add_option("scans", arguments->scans,
-                   "Directory of scans: neutral.obj, an OBJ file for each expression, textures, landmarks.json")
+      ->add_option(
+          "scans", arguments->scans,
+          "Directory of scans: neutral.obj, an OBJ (or GLB) file for each expression, textures, landmarks.json")
       ->required()
       ->type_name("SCANS");
   command
@@ -48,12 +50,22 @@ void addRegisterCommand(CLI::App& app, const CommonOptions& common) {
       ->add_option("--unit", arguments->options.unit,
                    "Unit of the scans (default: guessed from the size of the neutral)")
       ->type_name("UNIT");
+  command
+      ->add_option("--stop-after", arguments->last_step,
+                   "The last step of landmarks, model, bending, flow: to see what each does")
+      ->check(CLI::IsMember(allNames<RegistrationStep>()))
+      ->capture_default_str();
+  addMapsOption(*command, arguments->options.maps,
+                "albedo, and what the scans' shape has beyond the template's: normal, displacement (default: albedo)");
+  command->add_flag("--keep-colour", arguments->options.keep_colour,
+                    "Leave what the light changed between scans in the textures");
   addDeviceOption(*command, arguments->device);
   command->add_option("--report", arguments->report, "Also write what was found as JSON (docs/reports.md)")
       ->type_name("FILE");
   command->callback([arguments, &common] {
     TerminalProgress progress(common.quiet);
     arguments->options.landmarks = arguments->landmarks;
+    arguments->options.last_step = *findNamed<RegistrationStep>(arguments->last_step);
     requireReportPlace(arguments->report,
                        inputsOf(arguments->scans, arguments->registration_template, arguments->options)
                            .add(arguments->output, "the capture that is written"));

@@ -18,6 +18,7 @@ void addEvaluateCommand(CLI::App& app, const CommonOptions& common);
 void addExportCommand(CLI::App& app, const CommonOptions& common);
 void addReportCommand(CLI::App& app, const CommonOptions& common);
 void addViewCommand(CLI::App& app, const CommonOptions& common);
+void addAlignCommand(CLI::App& app, const CommonOptions& common);
 void addRegisterCommand(CLI::App& app, const CommonOptions& common);
 void addRigCommand(CLI::App& app, const CommonOptions& common);
 void addTrainCommand(CLI::App& app, const CommonOptions& common);

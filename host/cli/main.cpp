@@ -103,6 +103,7 @@ int main(int argc, char** argv) {
   addExportCommand(app, common);
   addReportCommand(app, common);
   addViewCommand(app, common);
+  addAlignCommand(app, common);
   addRegisterCommand(app, common);
   addRigCommand(app, common);
   addTrainCommand(app, common);

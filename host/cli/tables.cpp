@@ -277,12 +277,27 @@ void printGenerateReport(const GenerateReport& report) {
 void printRegistrationReport(const RegistrationReport& report) {
   say("{} vertices, {} triangles of the region, in {}{}\n", report.vertices, report.region_triangles, report.unit,
       report.unit_guessed ? " (guessed)" : "");
-  say("\n{:<34}{:>20}{:>20}{:>10}{:>20}\n", "scan to mesh, mm", "posed", "registered", "shown", "head moved");
-  say("{:<34}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "", "mean", "99th pct", "mean", "99th pct", "%", "degrees",
-      "mm");
+  say("\n{:<34}{:>20}{:>20}{:>10}{:>20}{:>20}\n", "scan to mesh, mm", "posed", "registered", "shown", "head moved",
+      "flow, texels");
+  say("{:<34}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "", "mean", "99th pct", "mean", "99th pct", "%",
+      "degrees", "mm", "before", "after");
   for (const RegisteredScan& scan : report.scans) {
-    say("{:<34}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.1f}{:>10.2f}{:>10.2f}\n", scan.name, scan.model_mean,
-        scan.model_p99, scan.mean, scan.p99, 100.0 * scan.coverage, scan.degrees, scan.millimetres);
+    say("{:<34}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.1f}{:>10.2f}{:>10.2f}{:>10.2f}{:>10.2f}\n", scan.name,
+        scan.model_mean, scan.model_p99, scan.mean, scan.p99, 100.0 * scan.coverage, scan.degrees, scan.millimetres,
+        scan.flow_before_mean, scan.flow_mean);
+  }
+  say("\n");
+  printSeconds(report.seconds);
+}
+
+void printAlignmentReport(const AlignmentReport& report) {
+  say("flow of {} against the neutral's, in texels of a picture {} wide\n", report.map, report.flow_width);
+  say("\n{:<34}{:>20}{:>20}{:>10}{:>10}{:>8}\n", "", "before", "after", "believed", "moved by", "rounds");
+  say("{:<34}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "", "mean", "95th pct", "mean", "95th pct", "%", "at most");
+  for (const AlignedExpression& expression : report.expressions) {
+    say("{:<34}{:>10.2f}{:>10.2f}{:>10.2f}{:>10.2f}{:>10.1f}{:>10.2f}{:>8}\n", expression.name, expression.before_mean,
+        expression.before_p95, expression.after_mean, expression.after_p95, 100.0 * expression.trusted,
+        expression.largest, expression.rounds);
   }
   say("\n");
   printSeconds(report.seconds);

@@ -1,6 +1,7 @@
 // tables.hpp - results as tables for the terminal.
 #pragma once
 
+#include "facezip/alignment.hpp"
 #include "facezip/compress.hpp"
 #include "facezip/evaluate.hpp"
 #include "facezip/learn.hpp"
@@ -15,6 +16,7 @@ void printCompressReport(const CompressReport& report);
 void printEvaluation(const Evaluation& evaluation);
 /// Residuals, coverage and head motion of each scan, times.
 void printRegistrationReport(const RegistrationReport& report);
+void printAlignmentReport(const AlignmentReport& report);
 /// Residuals of each expression beside the template's, convergence, textures, times.
 void printRigReport(const RigReport& report);
 /// What was chosen for the regression, how well shapes and textures are predicted, times.

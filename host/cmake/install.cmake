@@ -17,6 +17,7 @@ configure_package_config_file(host/cmake/facezipConfig.cmake.in ${PROJECT_BINARY
   INSTALL_DESTINATION ${FACEZIP_CMAKE_DIR})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/facezipConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/facezipConfig.cmake ${PROJECT_BINARY_DIR}/facezipConfigVersion.cmake
+              host/cmake/opencv_video.cmake
   DESTINATION ${FACEZIP_CMAKE_DIR})
 
 # For builds without CMake: the C interface, which needs nothing else at link time.

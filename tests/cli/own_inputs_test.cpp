@@ -69,6 +69,17 @@ TEST_F(OwnInputs, Compress) {
   expectRefusal(compress() + " -o " + q("face") + " --importance " + q("face/masks.png"));
 }
 
+TEST_F(OwnInputs, Align) {
+  for (const char* output : {"capture", "capture/aligned", "link/aligned", "."}) {
+    expectRefusal("align " + q("capture") + " -o " + q(output));
+  }
+  for (const char* report : {"capture/neutral.obj", "capture/r.json", "hard.png", "aligned", "aligned/r.json"}) {
+    expectRefusal("align " + q("capture") + " -o " + q("aligned") + " --report " + q(report));
+  }
+  expectRefusal("align " + q("capture") + " -o " + q("aligned") + " --region " + q("hard.png") + " --report " +
+                q("hard.png"));
+}
+
 TEST_F(OwnInputs, Rig) {
   expectRefusal(rig() + " -o " + q("template/package"));
   expectRefusal(rig() + " -o " + q("capture/package"));

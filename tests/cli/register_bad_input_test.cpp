@@ -142,6 +142,12 @@ TEST_F(RegisterBadInput, AScanOfSomethingElse) {
   expectFailure({"neutral.obj", "landmarks"});
 }
 
+TEST_F(RegisterBadInput, MapsThatAreNone) {
+  expectFailure({"--maps", "albedo, and with it", "gloss"}, "--unit cm --resolution 64 --maps albedo,gloss");
+  expectFailure({"--maps"}, "--unit cm --resolution 64 --maps normal");
+  expectFailure({"--maps"}, "--unit cm --resolution 64 --maps albedo,normal,normal");
+}
+
 TEST_F(RegisterBadInput, ResolutionOutOfRange) { expectFailure({"--resolution"}, "--unit cm --resolution 20"); }
 
 TEST_F(RegisterBadInput, InvertedTrianglesAreTurnedAndHalfAFaceIsTold) {

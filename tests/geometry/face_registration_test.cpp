@@ -10,6 +10,7 @@
 #include "facezip/geometry/model_registration.hpp"
 #include "facezip/geometry/nonrigid_registration.hpp"
 #include "facezip/geometry/scan_surface.hpp"
+#include "facezip/geometry/skin_registration.hpp"
 #include "test_meshes.hpp"
 
 namespace facezip::geometry {
@@ -237,6 +238,61 @@ TEST(ScanSurface, ThinsPointsOutButNotTheirArea) {
   EXPECT_NEAR(static_cast<double>(thin.points().size()), 1000.0, 150.0);
   EXPECT_EQ(whole.points().size(), sheet.positions.rows());
   EXPECT_NEAR(thin.points().areas.sum(), whole.points().areas.sum(), 0.1 * whole.points().areas.sum());
+}
+
+/// A mesh that lies on the scan but slid along it, and where its triangles belong.
+struct Slid {
+  TriangleMesh scan_mesh = face(90, 0.6, 0.3);
+  TriangleMesh truth = face(kSide, 0.6);
+  Eigen::MatrixX3d slid = truth.positions;
+  BentSurface surface{truth.positions,
+                      {truth.triangles, std::vector<bool>(static_cast<std::size_t>(truth.triangles.rows()), true)},
+                      std::vector<bool>(static_cast<std::size_t>(truth.triangles.rows()), true)};
+  std::vector<SkinPoint> points;
+
+  Slid() {
+    for (Eigen::Index v = 0; v < slid.rows(); ++v) {
+      slid(v, 0) += 1.2 * std::sin(0.07 * slid(v, 1));
+      slid(v, 1) += 0.9 * std::cos(0.05 * slid(v, 0));
+      slid(v, 2) = height(slid(v, 0), slid(v, 1), 0.6);
+    }
+    const Eigen::RowVector3d centre = Eigen::RowVector3d::Constant(1.0 / 3.0);
+    for (int t = 0; t < truth.triangles.rows(); ++t) {
+      points.push_back({t, centre, centre * truth.positions(truth.triangles.row(t), Eigen::all), 1.0});
+    }
+  }
+  Eigen::MatrixX3d drawn() const {
+    const ScanSurface scan(scan_mesh.positions, scan_mesh.triangles);
+    return SkinRegistration(surface).draw(slid, slid, points, scan, {});
+  }
+  double error(const Eigen::MatrixX3d& mesh) const { return (mesh - truth.positions).rowwise().norm().mean(); }
+};
+
+TEST(SkinRegistration, PointsDrawAlongTheScanAndStayOnIt) {
+  const Slid test;
+  const Eigen::MatrixX3d drawn = test.drawn();
+  EXPECT_GT(test.error(test.slid), 0.9);
+  EXPECT_LT(test.error(drawn), 0.25);
+  const ScanSurface scan(test.scan_mesh.positions, test.scan_mesh.triangles);
+  double off = 0.0;
+  for (const auto& p : drawn.rowwise()) off += scan.surface().closest(p.transpose()).distance / double(drawn.rows());
+  EXPECT_LT(off, 0.05);
+}
+
+TEST(SkinRegistration, WithoutPointsItStays) {
+  Slid test;
+  test.points.clear();
+  EXPECT_LT((test.drawn() - test.slid).rowwise().norm().mean(), 0.05);
+}
+
+TEST(SkinRegistration, PointsThatAreNotTrustedDoNotDraw) {
+  Slid test;
+  for (SkinPoint& point : test.points) {
+    if (point.triangle % 2 == 0) continue;
+    point.target.x() += 20.0;
+    point.trust = 0.0;
+  }
+  EXPECT_LT(test.error(test.drawn()), 0.3);
 }
 
 }  // namespace

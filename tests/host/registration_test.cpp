@@ -39,6 +39,7 @@ struct Registered {
     RegistrationOptions options;
     options.resolution = kSide;
     options.unit = "cm";
+    options.maps = {"albedo", "normal", "displacement"};
     report =
         registerScans(folder / "scans", folder / "template", folder / "capture", options, test::testDevice(), notes);
   }
@@ -112,12 +113,77 @@ TEST(Registration, TheResultIsACapture) {
   const Registered& made = Registered::once();
   const Capture capture = openCapture(made.folder / "capture");
   EXPECT_THAT(capture.expressions, testing::ElementsAre("open"));
-  ASSERT_EQ(capture.maps.size(), 1u);
+  ASSERT_EQ(capture.maps.size(), 3u);
   EXPECT_EQ(capture.maps[0].name, "albedo");
+  EXPECT_EQ(capture.maps[1].colour_space, "linear");
   EXPECT_EQ(capture.unit, "cm");
   EXPECT_TRUE(capture.face_region.has_value());
   const geometry::TriangleMesh neutral = geometry::readObj(capture.neutral_mesh);
   EXPECT_NO_THROW(geometry::requireSameTopology(made.set.mesh(), "", neutral, ""));
+}
+
+TEST(Registration, FlowDrawsTexturesOntoTheNeutrals) {
+  const Registered& made = Registered::once();
+  const RegisteredScan& open = made.report.scans[1];
+  EXPECT_GE(made.report.flow_side, 256);
+  EXPECT_GE(open.flow_rounds, 1);
+  EXPECT_GT(open.flow_trusted, 0.8);
+  EXPECT_LT(open.flow_p95, open.flow_before_p95);
+  EXPECT_EQ(made.report.scans[0].flow_rounds, 0);
+  // How the expression moves against the neutral, with flow and without.
+  RegistrationOptions options;
+  options.resolution = kSide;
+  options.unit = "cm";
+  options.last_step = RegistrationStep::kBending;
+  options.keep_colour = true;
+  Notes notes;
+  registerScans(made.folder / "scans", made.folder / "template", made.folder / "bent", options, test::testDevice(),
+                notes);
+  const Eigen::MatrixX3d truth = 1000.0 * (made.set.truth(0.8) - made.set.truth(0.0));
+  const auto error = [&](const char* capture) {
+    const Eigen::MatrixX3d moved = 10.0 * (geometry::readObj(made.folder / capture / "expressions/open.obj").positions -
+                                           geometry::readObj(made.folder / capture / "neutral.obj").positions);
+    return (moved - truth).rowwise().norm().mean();
+  };
+  EXPECT_LT(error("capture"), 0.9 * error("bent"));
+  const image::Image kept = image::readImage(made.folder / "bent/albedo/open.png");
+  double blue = 0.0, red = 0.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(kSide * kSide); ++i) {
+    red += double{image::sampleAt(kept, 3 * i)};
+    blue += double{image::sampleAt(kept, 3 * i + 2)};
+  }
+  EXPECT_NEAR(blue / red, test::ScanSet::kLight[2] / test::ScanSet::kLight[0], 0.05);
+}
+
+TEST(Registration, TheLightOfTheNeutralIsThatOfAll) {
+  const Registered& made = Registered::once();
+  const RegisteredScan& open = made.report.scans[1];
+  EXPECT_TRUE(made.report.scans[0].colour_gain.empty());
+  ASSERT_EQ(open.colour_gain.size(), 3u);
+  for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(open.colour_gain[c], test::ScanSet::kLight[c], 0.01);
+  const image::Image texture = image::readImage(made.folder / "capture/albedo/open.png");
+  double means[3] = {};
+  for (std::size_t i = 0; i < 3u * kSide * kSide; ++i) means[i % 3] += double{image::sampleAt(texture, i)};
+  EXPECT_NEAR(means[0] / means[1], 1.0, 0.01);
+  EXPECT_NEAR(means[2] / means[1], 1.0, 0.01);
+}
+
+TEST(Registration, WhatTheMeshFollowsIsNeitherInNormalsNorInHeights) {
+  const Registered& made = Registered::once();
+  const image::Image normal = image::readImage(made.folder / "capture/normal/open.png");
+  const image::Image height = image::readImage(made.folder / "capture/displacement/open.png");
+  ASSERT_EQ(normal.shape, (image::ImageShape{kSide, kSide, 3, image::SampleType::kUint8}));
+  ASSERT_EQ(height.shape, (image::ImageShape{kSide, kSide, 1, image::SampleType::kUint16}));
+  const image::Image confidence = image::readImage(made.folder / "capture/confidence/open.png");
+  double up = 0.0, off = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(kSide * kSide); ++i) {
+    if (image::sampleAt(confidence, i) < 0.9f) continue;
+    up += 2.0 * double{image::sampleAt(normal, 3 * i + 2)} - 1.0;
+    off += 4.0 * std::abs(double{image::sampleAt(height, i)} - 0.5);
+    count += 1.0;
+  }
+  EXPECT_GT(up / count, 0.97);
+  EXPECT_LT(off / count, 0.2);
 }
 
 TEST(Registration, TheHeadsMotionIsTakenOutAndTold) {
@@ -132,6 +198,8 @@ TEST(Registration, ReportsAsJson) {
   EXPECT_EQ(report["scans"].size(), 2u);
   EXPECT_EQ(report["scans"][1]["name"], "open");
   EXPECT_GT(report["scans"][1]["head_motion"]["degrees"].get<double>(), 1.0);
+  EXPECT_GE(report["scans"][1]["flow_texels"]["rounds"].get<int>(), 1);
+  EXPECT_GE(report["flow_side"].get<int>(), 256);
 }
 
 TEST(HoleFilling, KeepsWhatIsKnownAndGoesOnSmoothly) {

@@ -1,6 +1,7 @@
 // facezip.hpp - all of the library. Programs that build often include what they use instead.
 #pragma once
 
+#include "facezip/alignment.hpp"
 #include "facezip/blend.hpp"
 #include "facezip/block_format.hpp"
 #include "facezip/capture.hpp"

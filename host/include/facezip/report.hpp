@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "facezip/alignment.hpp"
 #include "facezip/compress.hpp"
 #include "facezip/evaluate.hpp"
 #include "facezip/learn.hpp"
@@ -16,6 +17,7 @@ namespace facezip {
 std::string toJson(const CompressReport& report);
 std::string toJson(const Evaluation& evaluation);
 std::string toJson(const RegistrationReport& report);
+std::string toJson(const AlignmentReport& report);
 std::string toJson(const RigReport& report);
 std::string toJson(const SolvedClip& clip);
 std::string toJson(const TrainReport& report);

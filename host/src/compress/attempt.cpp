@@ -64,7 +64,8 @@ std::vector<FittedWeights> fitGroups(const CompressionJob& job, const PackageFor
                              grams.slot(grams.slots.whole()).trace(),
                              face.cells,
                              job.model.importance,
-                             job.memory.windowRows(form, groups[g])};
+                             job.memory.windowRows(form, groups[g]),
+                             form.blocks.has_value()};
     fitted.push_back(job.options.method == Method::kClosedLoop ? fitWeights(problem, 0, job.run)
                                                                : chooseFit(problem, form, face, band_rows, job.run));
     if (!form.blocks) continue;

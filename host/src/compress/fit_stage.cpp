@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "refine/difference_texture_range.hpp"
 #include "refine/refinement.hpp"
@@ -34,6 +35,9 @@ EncodedWeights encodeFitted(const GridWeights& weights, const FitProblem& proble
 FittedWeights fitWeights(const FitProblem& problem, int most_sweeps, const device::Run& run) {
   RefinementOptions options;
   options.most_sweeps = most_sweeps;
+  // What one texture's codes clamp, the blocks of those after it take up; and a wide range coarsens the ends of every
+  // block.
+  if (problem.in_blocks) options.most_clipped = std::numeric_limits<double>::infinity();
   const RefinementProblem refinement{problem.space,         problem.start,       problem.maps,
                                      weighedTiles(problem), cellEnergy(problem), problem.window_rows};
   Refinement refined = refine(run.context, refinement, options, run.progress);

@@ -37,7 +37,8 @@ struct FitProblem {
   double energy = 0.0;                    ///< of all differences: trace of their Gram matrix
   std::span<const std::uint8_t> covered;  ///< of every cell of the grid: 1 if it has a covered texel
   const std::optional<Importance>& importance;
-  int window_rows = 0;  ///< rows of cells that a window frees
+  int window_rows = 0;     ///< rows of cells that a window frees
+  bool in_blocks = false;  ///< textures become blocks, which are fitted to each other
 };
 
 /// Weights and difference textures fitted in turn.

@@ -68,7 +68,7 @@ double unitOfTemplate(const RegistrationTemplate& source, const PlacedScan& plac
 }
 
 RegisteredSubject registerNeutral(const RegistrationTemplate& source, double millimetres_per_unit,
-                                  const PlacedScan& placed, Progress& progress) {
+                                  const PlacedScan& placed, RegistrationStep last, Progress& progress) {
   const auto cancel = [&progress] { progress.checkCancelled(); };
   const Eigen::MatrixX3d generic = millimetres_per_unit * source.neutral.positions;
   const geometry::LinearModel identity(generic, scaled(source.identity, millimetres_per_unit), -kIdentityBound,
@@ -81,16 +81,20 @@ RegisteredSubject registerNeutral(const RegistrationTemplate& source, double mil
   geometry::ModelRegistrationOptions fit;
   fit.fit = {0.3, fit_scale};
   fit.rounds = 30;
-  pose = geometry::registerModel(identity, pose, placed.surface, whole, placed.landmarks, fit, cancel);
+  if (last >= RegistrationStep::kModel) {
+    pose = geometry::registerModel(identity, pose, placed.surface, whole, placed.landmarks, fit, cancel);
+  }
   const Eigen::MatrixX3d posed = pose.place(identity);
   geometry::BentSurface surface{posed, whole, geometry::seenTriangles(posed, whole.triangles, placed.surface)};
   const geometry::ScanResidual model_residual = geometry::residualOf(surface, posed, placed.surface, kFitReach);
-  requireFit(model_residual, placed);
+  if (last >= RegistrationStep::kModel) requireFit(model_residual, placed);
 
   geometry::NonRigidOptions bend;
   bend.landmark_share = landmarkShare(model_residual);
   const Eigen::MatrixX3d bent =
-      geometry::registerNonRigid(surface, posed, placed.surface, placed.landmarks, bend, cancel);
+      last >= RegistrationStep::kBending
+          ? geometry::registerNonRigid(surface, posed, placed.surface, placed.landmarks, bend, cancel)
+          : posed;
   const geometry::ScanResidual residual = geometry::residualOf(surface, bent, placed.surface);
   const double scale = pose.motion.scale;
   pose.motion.scale = 1.0;
@@ -104,7 +108,7 @@ RegisteredSubject registerNeutral(const RegistrationTemplate& source, double mil
 }
 
 RegisteredExpression registerExpression(const RegisteredSubject& subject, const PlacedScan& placed,
-                                        Progress& progress) {
+                                        RegistrationStep last, Progress& progress) {
   const auto cancel = [&progress] { progress.checkCancelled(); };
   const geometry::LinearModel& model = subject.expressions;
   // The unit comes before how well landmarks fit, which is told in millimetres.
@@ -118,27 +122,33 @@ RegisteredExpression registerExpression(const RegisteredSubject& subject, const 
   pose = geometry::poseFromLandmarks(model, pose, placed.landmarks, {2.0, false}, 8);
   geometry::ModelRegistrationOptions fit;
   fit.fit = {1.0, false};
-  pose = geometry::registerModel(model, pose, placed.surface, subject.surface.matched, placed.landmarks, fit, cancel);
+  if (last >= RegistrationStep::kModel) {
+    pose = geometry::registerModel(model, pose, placed.surface, subject.surface.matched, placed.landmarks, fit, cancel);
+  }
   RegisteredExpression expression;
   const Eigen::MatrixX3d posed = pose.place(model);
   expression.model_residual = geometry::residualOf(subject.surface, posed, placed.surface, kFitReach);
-  requireFit(expression.model_residual, placed);
+  if (last >= RegistrationStep::kModel) requireFit(expression.model_residual, placed);
   geometry::NonRigidOptions bend;
   bend.first_length = 12.0;
   bend.last_length = 3.0;
   bend.steps = 4;
   bend.first_kernel = 2.0;
   bend.landmark_share = landmarkShare(expression.model_residual);
-  expression.mesh = geometry::registerNonRigid(subject.surface, posed, placed.surface, placed.landmarks, bend, cancel);
+  expression.mesh =
+      last >= RegistrationStep::kBending
+          ? geometry::registerNonRigid(subject.surface, posed, placed.surface, placed.landmarks, bend, cancel)
+          : posed;
   expression.residual = geometry::residualOf(subject.surface, expression.mesh, placed.surface);
   expression.pose = std::move(pose);
   return expression;
 }
 
-geometry::Similarity headMotionOf(const RegisteredSubject& subject, const RegisteredExpression& expression) {
+geometry::Similarity headMotionOf(const RegisteredSubject& subject, const geometry::ModelPose& pose,
+                                  const Eigen::MatrixX3d& mesh) {
   const Eigen::VectorXd areas = geometry::vertexAreas(subject.neutral, subject.surface.matched.triangles);
   const Eigen::VectorXd used = areas.cwiseProduct(subject.surface.seenVertices());
-  return geometry::refitMotion(subject.expressions, expression.pose, expression.mesh, used).motion;
+  return geometry::refitMotion(subject.expressions, pose, mesh, used).motion;
 }
 
 }  // namespace facezip::registration

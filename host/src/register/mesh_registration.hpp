@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "facezip/geometry/nonrigid_registration.hpp"
+#include "facezip/registration.hpp"
 #include "register/registration_template.hpp"
 #include "register/scan_alignment.hpp"
 
@@ -22,9 +23,10 @@ struct RegisteredSubject {
 
 /// Landmarks, identity modes within three standard deviations (or the template as it is), then non-rigid.
 /// millimetres_per_unit  of the template, found by landmarks: `unitOfTemplate()`
+/// last                  the step that is done last
 /// Throws InputError where the template does not come to lie on the scan; SolverError, Cancelled.
 RegisteredSubject registerNeutral(const RegistrationTemplate& source, double millimetres_per_unit,
-                                  const PlacedScan& placed, Progress& progress);
+                                  const PlacedScan& placed, RegistrationStep last, Progress& progress);
 
 /// Millimetres in the template's unit: the one of mm, cm, dm, m, in and ft that makes it as large as the scan, nearly.
 /// Throws InputError as alignOrRefuse(), or where none does.
@@ -38,9 +40,12 @@ struct RegisteredExpression {
 
 /// Rigid motion and shapes by landmarks, then by closest points, then non-rigid.
 /// Throws InputError, SolverError, Cancelled.
-RegisteredExpression registerExpression(const RegisteredSubject& subject, const PlacedScan& placed, Progress& progress);
+RegisteredExpression registerExpression(const RegisteredSubject& subject, const PlacedScan& placed,
+                                        RegistrationStep last, Progress& progress);
 
 /// The rigid motion of the head in an expression.
-geometry::Similarity headMotionOf(const RegisteredSubject& subject, const RegisteredExpression& expression);
+/// mesh  as registered, where the scan is
+geometry::Similarity headMotionOf(const RegisteredSubject& subject, const geometry::ModelPose& pose,
+                                  const Eigen::MatrixX3d& mesh);
 
 }  // namespace facezip::registration

@@ -1,8 +1,10 @@
 // register_scans.cpp - from raw scans to a capture, scan by scan: meshes, then textures in the template's layout.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -11,12 +13,14 @@
 #include "facezip/geometry/length.hpp"
 #include "facezip/geometry/obj_io.hpp"
 #include "facezip/registration.hpp"
-#include "image/set_sample.hpp"
 #include "io/counts.hpp"
 #include "io/stage_clock.hpp"
 #include "io/staged_directory.hpp"
-#include "register/hole_filling.hpp"
+#include "register/baked_files.hpp"
+#include "register/colour_drift.hpp"
+#include "register/detail_maps.hpp"
 #include "register/mesh_registration.hpp"
+#include "register/skin_flow.hpp"
 #include "register/texture_baking.hpp"
 
 namespace facezip {
@@ -26,6 +30,9 @@ namespace fs = std::filesystem;
 
 constexpr const char* kManifest = "capture.json";
 constexpr const char* kMap = "albedo";
+constexpr const char* kNormal = "normal";
+constexpr const char* kDisplacement = "displacement";
+constexpr float kHeights = 4.0f;  // millimetres from black to white, as in the built-in capture
 constexpr const char* kConfidence = "confidence";
 constexpr double kLittleShown = 0.9;  // of what the neutral's scan shows
 
@@ -42,6 +49,15 @@ struct Job {
 };
 
 void requireSaneOptions(const RegistrationOptions& options) {
+  const auto count = [&options](const char* name) {
+    return std::count(options.maps.begin(), options.maps.end(), name);
+  };
+  const bool known =
+      count(kMap) + count(kNormal) + count(kDisplacement) == static_cast<std::ptrdiff_t>(options.maps.size());
+  if (!known || count(kMap) != 1 || count(kNormal) > 1 || count(kDisplacement) > 1) {
+    throw InputError({"--maps", "", "albedo, and with it normal, displacement or both, each once",
+                      fmt::format("{}", fmt::join(options.maps, ",")), ""});
+  }
   if (options.resolution >= 64 && options.resolution <= 16384) return;
   throw InputError({"--resolution", "", "64 to 16384", std::to_string(options.resolution), ""});
 }
@@ -50,7 +66,7 @@ void requireSaneOptions(const RegistrationOptions& options) {
 geometry::LengthUnit unitOf(const RegistrationOptions& options, const fs::path& neutral, Progress& progress) {
   if (!options.unit.empty()) return geometry::parseUnit(options.unit);
   try {
-    const geometry::UnitGuess guess = geometry::guessUnit(geometry::readObj(neutral));
+    const geometry::UnitGuess guess = geometry::guessUnit(readScanMesh(neutral));
     progress.note(guess.explanation);
     return guess.unit;
   } catch (const InputError& error) {
@@ -64,40 +80,30 @@ void writeMesh(const Job& job, const fs::path& file, const Eigen::MatrixX3d& pos
   geometry::writeObj(file, mesh);
 }
 
-void writeTexture(const fs::path& folder, const std::string& name, const BakedTexture& texture) {
-  io::createDirectories(folder);
-  const bool is_float = texture.type == image::SampleType::kFloat32;
-  image::Image out{{texture.side, texture.side, texture.channels, texture.type}, {}};
-  out.samples.resize(toSize(texture.side) * out.shape.rowBytes());
-  for (std::size_t i = 0; i < texture.samples.size(); ++i) image::setSample(out, i, texture.samples[i]);
-  image::writeImage(folder / (name + (is_float ? ".exr" : ".png")), out);
+/// All of the mesh gets texels, and a gutter; what the scan does not show is filled.
+raster::UvRaster layoutOf(const Job& job) {
+  const int side = job.options.resolution;
+  return {job.source.neutral, geometry::wholeMeshRegion(job.source.neutral), side, side, std::max(4, side / 128)};
 }
 
-void writeConfidence(const fs::path& folder, const std::string& name, const BakedTexture& texture) {
-  io::createDirectories(folder);
-  image::Image out{{texture.side, texture.side, 1, image::SampleType::kUint8}, {}};
-  const auto bytes = std::as_bytes(std::span(texture.confidence));
-  out.samples.assign(bytes.begin(), bytes.end());
-  image::writeImage(folder / (name + ".png"), out);
+bool wants(const Job& job, const char* map) {
+  return std::find(job.options.maps.begin(), job.options.maps.end(), map) != job.options.maps.end();
 }
 
-/// The neutral's texture is whole once its holes are filled from around them; an expression's follow the neutral's.
-void fillTexture(BakedTexture& texture, const BakedTexture* neutral) {
-  if (neutral != nullptr) {
-    for (std::size_t i = 0; i < texture.samples.size(); ++i) texture.samples[i] -= neutral->samples[i];
+/// What the scan's shape has beyond the mesh's, of the maps that are wanted.
+void writeDetail(const Job& job, const std::string& name, const Eigen::MatrixX3d& mesh, const PlacedScan& placed) {
+  if (!wants(job, kNormal) && !wants(job, kDisplacement)) return;
+  DetailMaps maps =
+      bakeDetail(layoutOf(job), job.source.neutral, mesh, placed.scan.mesh.triangles, placed.surface, job.progress);
+  for (float& n : maps.normals) n = 0.5f * n + 0.5f;
+  for (float& height : maps.heights) height = 0.5f + height / kHeights;
+  if (wants(job, kNormal)) {
+    writeTexture(job.directory / kNormal, name, {maps.side, 3, image::SampleType::kUint8, std::move(maps.normals), {}});
   }
-  fillHoles(texture.samples, texture.channels, texture.side, texture.side, texture.confidence);
-  if (neutral != nullptr) {
-    for (std::size_t i = 0; i < texture.samples.size(); ++i) texture.samples[i] += neutral->samples[i];
+  if (wants(job, kDisplacement)) {
+    writeTexture(job.directory / kDisplacement, name,
+                 {maps.side, 1, image::SampleType::kUint16, std::move(maps.heights), {}});
   }
-}
-
-void requireSameChannels(const BakedTexture& texture, const BakedTexture& neutral, const fs::path& file) {
-  if (texture.channels == neutral.channels && texture.type == neutral.type) return;
-  throw InputError(
-      {file.string(), "texture",
-       fmt::format("{} channels of {} as the neutral's", neutral.channels, image::sampleTypeName(neutral.type)),
-       fmt::format("{} of {}", texture.channels, image::sampleTypeName(texture.type)), ""});
 }
 
 /// Triangles whose textures the capture is about.
@@ -121,16 +127,6 @@ std::vector<bool> texelsOf(const Job& job, const std::vector<int>& region) {
   return texels;
 }
 
-double coverageOf(const BakedTexture& texture, const std::vector<bool>& region) {
-  std::size_t shown = 0, wanted = 0;
-  for (std::size_t i = 0; i < region.size(); ++i) {
-    if (!region[i]) continue;
-    ++wanted;
-    shown += texture.confidence[i] > 0 ? 1 : 0;
-  }
-  return wanted == 0 ? 0.0 : static_cast<double>(shown) / static_cast<double>(wanted);
-}
-
 RegisteredScan reportOf(const PlacedScan& placed, const geometry::ScanResidual& model,
                         const geometry::ScanResidual& residual, const Eigen::MatrixX3d& mesh, double coverage) {
   RegisteredScan report;
@@ -149,12 +145,22 @@ RegisteredScan reportOf(const PlacedScan& placed, const geometry::ScanResidual& 
   return report;
 }
 
+void addFlow(const FlowRounds& rounds, RegisteredScan& report) {
+  report.flow_rounds = rounds.rounds;
+  report.flow_before_mean = rounds.before.mean;
+  report.flow_before_p95 = rounds.before.percentile_95;
+  report.flow_mean = rounds.after.mean;
+  report.flow_p95 = rounds.after.percentile_95;
+  report.flow_trusted = rounds.after.trusted;
+}
+
 /// The neutral, its texture without holes, and what they are judged by.
 struct Neutral {
   RegisteredSubject subject;
   BakedTexture texture;
   std::vector<int> region;
   std::vector<bool> texels;
+  std::unique_ptr<SkinFlow> flow;  ///< null without it
 };
 
 PlacedScan place(const Job& job, const fs::path& file, const geometry::TriangleMesh& mesh) {
@@ -162,41 +168,60 @@ PlacedScan place(const Job& job, const fs::path& file, const geometry::TriangleM
                    mesh, job.progress);
 }
 
-/// All of the mesh gets texels, and a gutter; what the scan does not show is filled.
-raster::UvRaster layoutOf(const Job& job) {
-  const int side = job.options.resolution;
-  return {job.source.neutral, geometry::wholeMeshRegion(job.source.neutral), side, side, std::max(4, side / 128)};
+BakedTexture bake(const Job& job, const Eigen::MatrixX3d& mesh, const PlacedScan& placed) {
+  ScanTextures textures(job.source.neutral, mesh, job.options.resolution, placed.scan, placed.surface, job.context);
+  return bakeTexture(layoutOf(job), job.source.neutral, mesh, placed.surface, textures, job.progress);
 }
 
 Neutral registerNeutralScan(Job& job, RegistrationReport& report) {
   const PlacedScan placed = place(job, job.folder.neutral, job.source.neutral);
   job.template_unit = unitOfTemplate(job.source, placed);
-  RegisteredSubject subject = registerNeutral(job.source, job.template_unit, placed, job.progress);
+  Neutral neutral{
+      registerNeutral(job.source, job.template_unit, placed, job.options.last_step, job.progress), {}, {}, {}, {}};
+  const RegisteredSubject& subject = neutral.subject;
   const Eigen::MatrixX3d mesh = subject.motion.apply(subject.neutral);
-  BakedTexture texture =
-      bakeTexture(layoutOf(job), job.source.neutral, mesh, placed.scan, placed.surface, job.context, job.progress);
-  std::vector<int> region = regionOf(job, subject);
-  std::vector<bool> texels = texelsOf(job, region);
-  report.scans.push_back(reportOf(placed, subject.model_residual, subject.residual, mesh, coverageOf(texture, texels)));
+  neutral.texture = bake(job, mesh, placed);
+  neutral.region = regionOf(job, subject);
+  neutral.texels = texelsOf(job, neutral.region);
+  report.scans.push_back(
+      reportOf(placed, subject.model_residual, subject.residual, mesh, coverageOf(neutral.texture, neutral.texels)));
   report.template_scale = subject.scale;
-  writeConfidence(job.directory / kConfidence, "neutral", texture);
-  fillTexture(texture, nullptr);
+  writeConfidence(job.directory / kConfidence, "neutral", neutral.texture);
+  fillTexture(neutral.texture, nullptr);
   writeMesh(job, job.directory / "neutral.obj", subject.neutral);
-  writeTexture(job.directory / kMap, "neutral", texture);
-  return {std::move(subject), std::move(texture), std::move(region), std::move(texels)};
+  writeTexture(job.directory / kMap, "neutral", neutral.texture);
+  writeDetail(job, "neutral", mesh, placed);
+  if (job.options.last_step >= RegistrationStep::kFlow) {
+    neutral.flow =
+        std::make_unique<SkinFlow>(subject.surface, job.source.neutral, placed, mesh, job.context, job.progress);
+    report.flow_side = neutral.flow->side();
+  }
+  return neutral;
 }
 
 RegisteredScan registerExpressionScan(const Job& job, const Neutral& neutral, const fs::path& file) {
   geometry::TriangleMesh mesh = job.source.neutral;
   mesh.positions = neutral.subject.neutral;
   const PlacedScan placed = place(job, file, mesh);
-  const RegisteredExpression expression = registerExpression(neutral.subject, placed, job.progress);
-  const geometry::Similarity motion = headMotionOf(neutral.subject, expression);
-  BakedTexture texture = bakeTexture(layoutOf(job), job.source.neutral, expression.mesh, placed.scan, placed.surface,
-                                     job.context, job.progress);
+  RegisteredExpression expression = registerExpression(neutral.subject, placed, job.options.last_step, job.progress);
+  FlowRounds rounds;
+  if (neutral.flow) {
+    rounds = neutral.flow->draw(expression.pose.place(neutral.subject.expressions), expression.mesh, placed);
+    expression.mesh = rounds.mesh;
+    expression.residual = geometry::residualOf(neutral.subject.surface, expression.mesh, placed.surface);
+  }
+  const geometry::Similarity motion = headMotionOf(neutral.subject, expression.pose, expression.mesh);
+  BakedTexture texture = bake(job, expression.mesh, placed);
   requireSameChannels(texture, neutral.texture, file);
+  const Eigen::MatrixX3d moved = (expression.mesh.rowwise() - motion.shift) * motion.turn;
   RegisteredScan report = reportOf(placed, expression.model_residual, expression.residual, expression.mesh,
                                    coverageOf(texture, neutral.texels));
+  addFlow(rounds, report);
+  if (!job.options.keep_colour) {
+    report.colour_gain =
+        colourGains(layoutOf(job), job.source.neutral, neutral.subject.neutral, moved, neutral.texture, texture);
+    takeOut(report.colour_gain, texture);
+  }
   // Against the neutral's scan, which has a motion of its own from the template's place.
   const Eigen::Matrix3d turn = motion.turn * neutral.subject.motion.turn.transpose();
   report.degrees = Eigen::AngleAxisd(turn).angle() * 180.0 / std::numbers::pi;
@@ -206,9 +231,9 @@ RegisteredScan registerExpressionScan(const Job& job, const Neutral& neutral, co
                            .mean();
   writeConfidence(job.directory / kConfidence, report.name, texture);
   fillTexture(texture, &neutral.texture);
-  writeMesh(job, job.directory / "expressions" / (report.name + ".obj"),
-            (expression.mesh.rowwise() - motion.shift) * motion.turn);
+  writeMesh(job, job.directory / "expressions" / (report.name + ".obj"), moved);
   writeTexture(job.directory / kMap, report.name, texture);
+  writeDetail(job, report.name, expression.mesh, placed);
   return report;
 }
 
@@ -223,17 +248,31 @@ void writeManifest(const Job& job, const RegistrationReport& report, const std::
   nlohmann::ordered_json manifest;
   manifest["name"] = name;
   manifest["unit"] = report.unit;
-  manifest["maps"][kMap] = nlohmann::ordered_json::object();  // what else holds images is no map
+  for (const std::string& map : job.options.maps) {  // what else holds images is no map
+    manifest["maps"][map] = nlohmann::ordered_json::object();
+    if (map != kMap) manifest["maps"][map]["colour_space"] = "linear";
+  }
   for (std::size_t n = 1; n < report.scans.size(); ++n) manifest["expressions"].push_back(report.scans[n].name);
   manifest["generator"] = "facezip register";
   io::writeTextFile(job.directory / kManifest, manifest.dump(2) + "\n");
 }
 
 std::vector<fs::path> everyFile(const fs::path&) {
-  return {kManifest, "neutral.obj", "expressions", "face_region.txt", kMap, kConfidence};
+  return {kManifest, "neutral.obj", "expressions", "face_region.txt", kMap, kNormal, kDisplacement, kConfidence};
 }
 
 }  // namespace
+
+template <>
+const std::vector<NamedValue<RegistrationStep>>& namesOf() {
+  static const std::vector<NamedValue<RegistrationStep>> names = {
+      {RegistrationStep::kLandmarks, "landmarks", "landmarks"},
+      {RegistrationStep::kModel, "model", "model by closest points"},
+      {RegistrationStep::kBending, "bending", "bending"},
+      {RegistrationStep::kFlow, "flow", "optical flow"},
+  };
+  return names;
+}
 
 ProtectedPaths inputsOf(const fs::path& scans, const fs::path& template_directory, const RegistrationOptions& options) {
   ProtectedPaths paths;

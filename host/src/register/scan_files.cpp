@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include "facezip/error.hpp"
 #include "facezip/geometry/obj_io.hpp"
 #include "facezip/geometry/textured_obj.hpp"
 #include "image/input_extensions.hpp"
 #include "io/safe_names.hpp"
+#include "register/glb_scan.hpp"
 
 namespace facezip::registration {
 namespace fs = std::filesystem;
@@ -19,10 +21,35 @@ constexpr const char* kNeutral = "neutral";
 fs::path meshFolder(const fs::path& directory) {
   std::error_code error;
   if (!fs::is_directory(directory, error)) {
-    throw InputError({directory.string(), "scans", "a directory with neutral.obj and a mesh for each expression",
+    throw InputError({directory.string(), "scans",
+                      "a directory with neutral.obj (or .glb) and a mesh for each expression",
                       fs::exists(directory, error) ? "a file" : "no such directory", ""});
   }
   return fs::is_directory(directory / "scans", error) ? directory / "scans" : directory;
+}
+
+bool isGlb(const fs::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension == ".glb";
+}
+
+/// Meshes of the folder by name.
+std::vector<fs::path> scansOf(const fs::path& folder) {
+  std::vector<fs::path> files = geometry::objFiles(folder);
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error); !error && entry != fs::directory_iterator();
+       entry.increment(error)) {
+    if (isGlb(entry->path())) files.push_back(entry->path());
+  }
+  std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) { return a.stem() < b.stem(); });
+  for (std::size_t i = 1; i < files.size(); ++i) {
+    if (files[i].stem() != files[i - 1].stem()) continue;
+    throw InputError({folder.string(), "scans", "one mesh of a name",
+                      files[i - 1].filename().string() + " and " + files[i].filename().string(), "remove one"});
+  }
+  return files;
 }
 
 /// The image beside the mesh that has its name. Empty if there is none.
@@ -56,7 +83,7 @@ void requireTextures(Scan& scan) {
     }
     if (!used[m] || !scan.textures[m].empty()) continue;
     throw InputError({scan.file.string(), "",
-                      "a texture: map_Kd in its material library, or an image of the scan's name beside it",
+                      "a texture: of its material (map_Kd, baseColorTexture), or an image of the scan's name beside it",
                       none ? "none" : "triangles of a material without one", ""});
   }
 }
@@ -66,7 +93,7 @@ void requireTextures(Scan& scan) {
 ScanFolder openScans(const fs::path& directory, const fs::path& landmarks) {
   ScanFolder found;
   const fs::path folder = meshFolder(directory);
-  for (const fs::path& file : geometry::objFiles(folder)) {
+  for (const fs::path& file : scansOf(folder)) {
     const std::string name = file.stem().string();
     if (name == kNeutral) {
       found.neutral = file;
@@ -77,7 +104,8 @@ ScanFolder openScans(const fs::path& directory, const fs::path& landmarks) {
     }
     found.expressions.push_back(file);
   }
-  if (found.neutral.empty()) throw InputError({folder.string(), "scans", "neutral.obj", "none", "name the neutral so"});
+  if (found.neutral.empty())
+    throw InputError({folder.string(), "scans", "neutral.obj or neutral.glb", "none", "name the neutral so"});
   if (found.expressions.empty()) {
     throw InputError({folder.string(), "scans", "an expression, NAME.obj, beside the neutral", "none", ""});
   }
@@ -86,9 +114,16 @@ ScanFolder openScans(const fs::path& directory, const fs::path& landmarks) {
   return found;
 }
 
+geometry::TriangleMesh readScanMesh(const fs::path& file) {
+  return isGlb(file) ? readGlbScan(file).textured.mesh : geometry::readObj(file);
+}
+
 Scan readScan(const fs::path& file) {
-  geometry::TexturedMesh read = geometry::readTexturedObj(file);
+  GlbScan glb;
+  if (isGlb(file)) glb = readGlbScan(file);
+  geometry::TexturedMesh read = isGlb(file) ? std::move(glb.textured) : geometry::readTexturedObj(file);
   Scan scan;
+  scan.pictures = std::move(glb.pictures);
   scan.name = file.stem().string();
   scan.file = file;
   scan.mesh = std::move(read.mesh);

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "facezip/geometry/mesh.hpp"
 #include "facezip/geometry/scan_surface.hpp"
+#include "io/scratch_directory.hpp"
 #include "register/landmark_files.hpp"
 
 namespace facezip::registration {
@@ -19,8 +21,9 @@ struct ScanFolder {
   ScanLandmarks landmarks;
 };
 
-/// Finds NAME.obj in DIR/scans, or in DIR itself, and reads DIR/landmarks.json, or `landmarks` where that is not empty.
-/// Throws InputError: no directory, no neutral.obj, no expression, names that a capture cannot hold, no landmarks.
+/// Finds NAME.obj and NAME.glb in DIR/scans, or in DIR itself, and reads DIR/landmarks.json, or `landmarks` where that
+/// is not empty. Throws InputError: no directory, no neutral, no expression, names that a capture cannot hold, no
+/// landmarks.
 ScanFolder openScans(const std::filesystem::path& directory, const std::filesystem::path& landmarks);
 
 /// A scan, cleaned.
@@ -31,9 +34,14 @@ struct Scan {
   std::vector<int> materials;                   ///< #T, index into textures
   std::vector<std::filesystem::path> textures;  ///< images; empty for materials that no triangle has
   geometry::ScanCleaning cleaning;
+  std::unique_ptr<io::ScratchDirectory> pictures;  ///< where textures that were in the mesh's file lie; may be null
 };
 
-/// Reads a scan with the textures that its materials name; where they name none, NAME.png (or another image) beside it.
+/// The mesh alone, as it stands in the file. Throws InputError.
+geometry::TriangleMesh readScanMesh(const std::filesystem::path& file);
+
+/// Reads a scan, OBJ or binary glTF, with the textures of its materials; where they have none, NAME.png (or another
+/// image) beside it.
 /// Throws InputError: a mesh without UVs, a material without a texture that triangles have, nothing but crumbs.
 Scan readScan(const std::filesystem::path& file);
 

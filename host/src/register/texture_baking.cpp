@@ -10,7 +10,7 @@
 
 #include "facezip/error.hpp"
 #include "facezip/geometry/mesh_edges.hpp"
-#include "image/set_sample.hpp"
+#include "image/averaged_image.hpp"
 #include "io/counts.hpp"
 #include "register/resample.hpp"
 
@@ -27,109 +27,36 @@ std::uint8_t confidenceOf(double cosine, double distance) {
   return static_cast<std::uint8_t>(std::lround(std::clamp(255.0 * cosine / (1.0 + share * share), 1.0, 255.0)));
 }
 
-/// The texture with every `factor` by `factor` texels averaged to one; those at the right and below may be fewer.
-/// Alpha and what else is beyond one or three channels is left out.
-image::Image readAveraged(const std::filesystem::path& file, int factor) {
-  image::ImageReader reader(file);
-  const image::ImageShape from = reader.shape();
-  image::ImageShape to = from;
-  to.width = divideUp(from.width, factor);
-  to.height = divideUp(from.height, factor);
-  to.channels = from.channels >= 3 ? 3 : 1;
-  image::Image averaged{to, std::vector<std::byte>(toSize(to.height) * to.rowBytes())};
-  image::Image rows{from, {}};
-  const Layout<3> place(to.height, to.width, to.channels);
-  for (int y = 0; y < to.height; ++y) {
-    const int begin = y * factor, end = std::min(begin + factor, from.height);
-    rows.shape.height = end - begin;
-    rows.samples.resize(toSize(end - begin) * from.rowBytes());
-    reader.readRows(begin, end, rows.samples);
-    const Layout<3> at(end - begin, from.width, from.channels);
-    tbb::parallel_for(0, to.width, [&](int x) {
-      const int columns = std::min(factor, from.width - x * factor);
-      for (int c = 0; c < to.channels; ++c) {
-        double sum = 0.0;
-        for (int j = 0; j < end - begin; ++j) {
-          for (int i = 0; i < columns; ++i) sum += double{image::sampleAt(rows, at(j, x * factor + i, c))};
-        }
-        image::setSample(averaged, place(y, x, c), static_cast<float>(sum / ((end - begin) * columns)));
-      }
-    });
+/// Area of the wanted triangles in their texture plane, of 1, for each square millimetre of skin; 0 without any.
+template <typename Wanted>
+double planeOfSkin(const geometry::TriangleMesh& mesh, const Eigen::MatrixX3d& positions, Wanted&& wanted) {
+  double plane = 0.0, skin = 0.0;
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
+    if (!wanted(t)) continue;
+    const Eigen::RowVector2d a = mesh.uvs.row(mesh.uv_triangles(t, 0));
+    const Eigen::RowVector2d b = mesh.uvs.row(mesh.uv_triangles(t, 1)) - a,
+                             c = mesh.uvs.row(mesh.uv_triangles(t, 2)) - a;
+    plane += 0.5 * std::abs(b.x() * c.y() - b.y() * c.x());
+    skin += geometry::triangleArea(positions, mesh.triangles, t);
   }
-  return averaged;
+  return skin > 0.0 ? plane / skin : 0.0;
 }
 
-/// How many texels of the scan's texture go on one of the layout, along each axis, on the whole.
-int averagingFactor(const raster::UvRaster& raster, const geometry::TriangleMesh& mesh,
-                    const Eigen::MatrixX3d& positions, const Scan& scan, const geometry::ScanSurface& surface,
-                    std::size_t material, const image::ImageShape& shape) {
-  const auto density = [](const geometry::TriangleMesh& of, const Eigen::MatrixX3d& at, double texels, auto wanted) {
-    double plane = 0.0, skin = 0.0;
-    for (Eigen::Index t = 0; t < of.triangles.rows(); ++t) {
-      if (!wanted(t)) continue;
-      const Eigen::RowVector2d a = of.uvs.row(of.uv_triangles(t, 0));
-      const Eigen::RowVector2d b = of.uvs.row(of.uv_triangles(t, 1)) - a, c = of.uvs.row(of.uv_triangles(t, 2)) - a;
-      plane += 0.5 * std::abs(b.x() * c.y() - b.y() * c.x());
-      skin += geometry::triangleArea(at, of.triangles, t);
-    }
-    return skin > 0.0 ? texels * plane / skin : 0.0;
-  };
-  const double source =
-      density(scan.mesh, surface.judged().positions, 1.0 * shape.width * shape.height,
-              [&](Eigen::Index t) { return scan.materials[toSize(t)] == static_cast<int>(material); });
-  const double layout =
-      density(mesh, positions, 1.0 * raster.width() * raster.height(), [](Eigen::Index) { return true; });
-  if (!(layout > 0.0)) return 1;
-  return std::clamp(static_cast<int>(std::sqrt(source / layout)), 1, 64);
+double planeOfLayout(const geometry::TriangleMesh& mesh, const Eigen::MatrixX3d& positions) {
+  return planeOfSkin(mesh, positions, [](Eigen::Index) { return true; });
+}
+
+/// Texels of a material's texture on a square millimetre of skin.
+double texelsOfSkin(const Scan& scan, const geometry::ScanSurface& surface, std::size_t material,
+                    const image::ImageShape& shape) {
+  return 1.0 * shape.width * shape.height * planeOfSkin(scan.mesh, surface.judged().positions, [&](Eigen::Index t) {
+           return scan.materials[toSize(t)] == static_cast<int>(material);
+         });
 }
 
 /// Coordinates beyond 0 to 1 repeat the texture.
 double wrapped(double coordinate) {
   return coordinate < 0.0 || coordinate > 1.0 ? coordinate - std::floor(coordinate) : coordinate;
-}
-
-/// Places in the texture of a material; NaN for texels of others.
-std::vector<float> placesOf(const std::vector<SeenTexel>& seen, const Scan& scan, int material, double columns,
-                            double rows) {
-  std::vector<float> places(2 * seen.size(), std::numeric_limits<float>::quiet_NaN());
-  tbb::parallel_for(std::size_t{0}, seen.size(), [&](std::size_t i) {
-    const SeenTexel& texel = seen[i];
-    if (texel.triangle < 0 || scan.materials[toSize(texel.triangle)] != material) return;
-    const double weights[3] = {double{texel.b0}, double{texel.b1}, 1.0 - double{texel.b0} - double{texel.b1}};
-    Eigen::RowVector2d uv = Eigen::RowVector2d::Zero();
-    for (int k = 0; k < 3; ++k) uv += weights[k] * scan.mesh.uvs.row(scan.mesh.uv_triangles(texel.triangle, k));
-    places[2 * i] = static_cast<float>(wrapped(uv.x()) * columns - 0.5);
-    places[2 * i + 1] = static_cast<float>((1.0 - wrapped(uv.y())) * rows - 0.5);
-  });
-  return places;
-}
-
-/// The textures of a scan that triangles have, on the device.
-struct Source {
-  int material;
-  double columns, rows;  ///< of the whole texture, in averaged texels
-  TextureSampler sampler;
-};
-
-std::vector<Source> openSources(const raster::UvRaster& raster, const geometry::TriangleMesh& mesh,
-                                const Eigen::MatrixX3d& positions, const Scan& scan,
-                                const geometry::ScanSurface& surface, device::DeviceContext& context) {
-  std::vector<Source> sources;
-  for (std::size_t m = 0; m < scan.textures.size(); ++m) {
-    if (scan.textures[m].empty()) continue;
-    const image::ImageShape shape = image::ImageReader(scan.textures[m]).shape();
-    const int factor = averagingFactor(raster, mesh, positions, scan, surface, m, shape);
-    const image::Image texture = readAveraged(scan.textures[m], factor);
-    sources.push_back({static_cast<int>(m), static_cast<double>(shape.width) / factor,
-                       static_cast<double>(shape.height) / factor, TextureSampler(context, texture)});
-    const image::ImageShape& first = sources.front().sampler.shape();
-    if (texture.shape.channels == first.channels && texture.shape.type == first.type) continue;
-    throw InputError({scan.textures[m].string(), "",
-                      fmt::format("{} channels of {} as the scan's other textures", first.channels,
-                                  image::sampleTypeName(first.type)),
-                      fmt::format("{} of {}", texture.shape.channels, image::sampleTypeName(texture.shape.type)), ""});
-  }
-  return sources;
 }
 
 }  // namespace
@@ -165,14 +92,70 @@ std::vector<SeenTexel> seenTexels(const raster::UvRaster& raster, const Eigen::M
   return seen;
 }
 
+ScanTextures::ScanTextures(const geometry::TriangleMesh& mesh, const Eigen::MatrixX3d& positions, int side,
+                           const Scan& scan, const geometry::ScanSurface& surface, device::DeviceContext& context)
+    : scan_(scan) {
+  const double layout = 1.0 * side * side * planeOfLayout(mesh, positions);
+  for (std::size_t m = 0; m < scan.textures.size(); ++m) {
+    if (scan.textures[m].empty()) continue;
+    const image::ImageShape shape = image::ImageReader(scan.textures[m]).shape();
+    const double texels = texelsOfSkin(scan, surface, m, shape);
+    const int factor = layout > 0.0 ? std::clamp(static_cast<int>(std::sqrt(texels / layout)), 1, 64) : 1;
+    const image::Image texture = image::readAveraged(scan.textures[m], factor);
+    sources_.push_back({static_cast<int>(m), static_cast<double>(shape.width) / factor,
+                        static_cast<double>(shape.height) / factor, TextureSampler(context, texture)});
+    const image::ImageShape& first = sources_.front().sampler.shape();
+    if (texture.shape.channels == first.channels && texture.shape.type == first.type) continue;
+    throw InputError({scan.textures[m].string(), "",
+                      fmt::format("{} channels of {} as the scan's other textures", first.channels,
+                                  image::sampleTypeName(first.type)),
+                      fmt::format("{} of {}", texture.shape.channels, image::sampleTypeName(texture.shape.type)), ""});
+  }
+}
+
+/// Places in the texture of a material; NaN for texels of others.
+std::vector<float> ScanTextures::placesOf(std::span<const SeenTexel> seen, const Source& source) const {
+  std::vector<float> places(2 * seen.size(), std::numeric_limits<float>::quiet_NaN());
+  tbb::parallel_for(std::size_t{0}, seen.size(), [&](std::size_t i) {
+    const SeenTexel& texel = seen[i];
+    if (texel.triangle < 0 || scan_.materials[toSize(texel.triangle)] != source.material) return;
+    const double weights[3] = {double{texel.b0}, double{texel.b1}, 1.0 - double{texel.b0} - double{texel.b1}};
+    Eigen::RowVector2d uv = Eigen::RowVector2d::Zero();
+    for (int k = 0; k < 3; ++k) uv += weights[k] * scan_.mesh.uvs.row(scan_.mesh.uv_triangles(texel.triangle, k));
+    places[2 * i] = static_cast<float>(wrapped(uv.x()) * source.columns - 0.5);
+    places[2 * i + 1] = static_cast<float>((1.0 - wrapped(uv.y())) * source.rows - 0.5);
+  });
+  return places;
+}
+
+void ScanTextures::sample(std::span<const SeenTexel> seen, std::span<float> samples) {
+  for (Source& source : sources_) source.sampler.sample(placesOf(seen, source), samples);
+  const float scale = image::unit255(type()) / 255.0f;
+  const auto stride = toSize(channels());
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (seen[i].triangle < 0) continue;
+    for (std::size_t c = 0; c < stride; ++c) samples[i * stride + c] *= scale;
+  }
+}
+
+double layoutSideOf(const geometry::TriangleMesh& mesh, const Eigen::MatrixX3d& positions, const Scan& scan,
+                    const geometry::ScanSurface& surface) {
+  double texels = 0.0;
+  for (std::size_t m = 0; m < scan.textures.size(); ++m) {
+    if (scan.textures[m].empty()) continue;
+    texels = std::max(texels, texelsOfSkin(scan, surface, m, image::ImageReader(scan.textures[m]).shape()));
+  }
+  const double plane = planeOfLayout(mesh, positions);
+  return plane > 0.0 ? std::sqrt(texels / plane) : 0.0;
+}
+
 BakedTexture bakeTexture(const raster::UvRaster& raster, const geometry::TriangleMesh& mesh,
-                         const Eigen::MatrixX3d& positions, const Scan& scan, const geometry::ScanSurface& surface,
-                         device::DeviceContext& context, Progress& progress) {
-  std::vector<Source> sources = openSources(raster, mesh, positions, scan, surface, context);
+                         const Eigen::MatrixX3d& positions, const geometry::ScanSurface& surface,
+                         ScanTextures& textures, Progress& progress) {
   BakedTexture baked;
   baked.side = raster.width();
-  baked.channels = sources.front().sampler.shape().channels;
-  baked.type = sources.front().sampler.shape().type;
+  baked.channels = textures.channels();
+  baked.type = textures.type();
   const std::size_t texels = toSize(raster.width(), raster.height());
   baked.samples.assign(texels * toSize(baked.channels), 0.0f);
   baked.confidence.assign(texels, 0);
@@ -181,15 +164,10 @@ BakedTexture bakeTexture(const raster::UvRaster& raster, const geometry::Triangl
     const int end = std::min(begin + kBandRows, raster.height());
     const std::vector<SeenTexel> seen = seenTexels(raster, mesh.triangles, positions, surface, begin, end);
     const std::size_t first = toSize(begin, raster.width());
-    const std::span<float> samples =
-        std::span(baked.samples).subspan(first * toSize(baked.channels), seen.size() * toSize(baked.channels));
-    for (Source& source : sources) {
-      source.sampler.sample(placesOf(seen, scan, source.material, source.columns, source.rows), samples);
-    }
+    textures.sample(
+        seen, std::span(baked.samples).subspan(first * toSize(baked.channels), seen.size() * toSize(baked.channels)));
     for (std::size_t i = 0; i < seen.size(); ++i) baked.confidence[first + i] = seen[i].confidence;
   }
-  const float scale = image::unit255(baked.type) / 255.0f;
-  for (float& sample : baked.samples) sample *= scale;
   return baked;
 }
 

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "device/device_context.hpp"
@@ -10,6 +11,7 @@
 #include "facezip/progress.hpp"
 #include "image/image_file.hpp"
 #include "raster/uv_raster.hpp"
+#include "register/resample.hpp"
 #include "register/scan_files.hpp"
 
 namespace facezip::registration {
@@ -38,10 +40,40 @@ std::vector<SeenTexel> seenTexels(const raster::UvRaster& raster, const Eigen::M
                                   const Eigen::MatrixX3d& positions, const geometry::ScanSurface& scan, int begin,
                                   int end);
 
-/// Samples the scan's textures on the device. Textures finer than the layout are averaged down first.
-/// Throws InputError (an image), DeviceError, Cancelled.
+/// A scan's textures on the device, averaged down to about what the layout can hold.
+class ScanTextures {
+ public:
+  /// positions  of the registered mesh, or near it
+  /// side       of the layout in texels
+  /// Throws InputError (an image, textures that differ in channels or type), DeviceError.
+  ScanTextures(const geometry::TriangleMesh& mesh, const Eigen::MatrixX3d& positions, int side, const Scan& scan,
+               const geometry::ScanSurface& surface, device::DeviceContext& context);
+
+  int channels() const { return sources_.front().sampler.shape().channels; }
+  image::SampleType type() const { return sources_.front().sampler.shape().type; }
+  /// samples  channels() a texel, 1 at full scale; those of texels without a triangle stay as they are
+  void sample(std::span<const SeenTexel> seen, std::span<float> samples);
+
+ private:
+  /// The texture of a material.
+  struct Source {
+    int material;
+    double columns, rows;  ///< of the whole texture, in averaged texels
+    TextureSampler sampler;
+  };
+  std::vector<float> placesOf(std::span<const SeenTexel> seen, const Source& source) const;
+
+  const Scan& scan_;
+  std::vector<Source> sources_;
+};
+
+/// The side at which a layout holds all that the scan's textures do: texels of both are of one size on the skin.
+double layoutSideOf(const geometry::TriangleMesh& mesh, const Eigen::MatrixX3d& positions, const Scan& scan,
+                    const geometry::ScanSurface& surface);
+
+/// The scan's textures in the layout. Throws DeviceError, Cancelled.
 BakedTexture bakeTexture(const raster::UvRaster& raster, const geometry::TriangleMesh& mesh,
-                         const Eigen::MatrixX3d& positions, const Scan& scan, const geometry::ScanSurface& surface,
-                         device::DeviceContext& context, Progress& progress);
+                         const Eigen::MatrixX3d& positions, const geometry::ScanSurface& surface,
+                         ScanTextures& textures, Progress& progress);
 
 }  // namespace facezip::registration

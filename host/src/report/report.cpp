@@ -184,6 +184,7 @@ std::string toJson(const RegistrationReport& report) {
                  {"template_scale", report.template_scale},
                  {"vertices", report.vertices},
                  {"region_triangles", report.region_triangles},
+                 {"flow_side", report.flow_side},
                  {"scans", json::array()},
                  {"seconds", secondsJson(report.seconds)}};
   for (const RegisteredScan& scan : report.scans) {
@@ -196,7 +197,30 @@ std::string toJson(const RegistrationReport& report) {
                                {"residual_mm", {{"mean", scan.mean}, {"p99", scan.p99}}},
                                {"matched", scan.matched},
                                {"coverage", scan.coverage},
+                               {"flow_texels",
+                                {{"rounds", scan.flow_rounds},
+                                 {"before", {{"mean", scan.flow_before_mean}, {"p95", scan.flow_before_p95}}},
+                                 {"after", {{"mean", scan.flow_mean}, {"p95", scan.flow_p95}}},
+                                 {"trusted", scan.flow_trusted}}},
+                               {"colour_gain", scan.colour_gain},
                                {"head_motion", {{"degrees", scan.degrees}, {"mm", scan.millimetres}}}});
+  }
+  return object.dump(2) + "\n";
+}
+
+std::string toJson(const AlignmentReport& report) {
+  json object = {
+      {"facezip_report", "align"},       {"version", kReportVersion},    {"map", report.map},
+      {"flow_width", report.flow_width}, {"expressions", json::array()}, {"seconds", secondsJson(report.seconds)}};
+  for (const AlignedExpression& expression : report.expressions) {
+    object["expressions"].push_back({{"name", expression.name},
+                                     {"moved", expression.moved},
+                                     {"flow_texels",
+                                      {{"rounds", expression.rounds},
+                                       {"before", {{"mean", expression.before_mean}, {"p95", expression.before_p95}}},
+                                       {"after", {{"mean", expression.after_mean}, {"p95", expression.after_p95}}},
+                                       {"trusted", expression.trusted},
+                                       {"largest", expression.largest}}}});
   }
   return object.dump(2) + "\n";
 }

@@ -11,6 +11,7 @@
 #include "facezip/reconstruct.hpp"
 #include "kind_capture.hpp"
 #include "refine/grid_weights.hpp"
+#include "refine/tile_weights.hpp"
 #include "temporary_directory.hpp"
 #include "test_device.hpp"
 
@@ -229,6 +230,22 @@ TEST(GridWeights, ClampAFewFarValues) {
   used.assign(100, 1);
   used[55] = 0;
   EXPECT_NEAR(weights.encode(used, {}).scale[0], 1.0 / 255.0, 1e-6) << "unused cells do not stretch the range";
+}
+
+// Cells of 16 texels: a tile's texels interpolate between its own cell and those around it.
+TEST(LargestWeights, AreThoseThatATileInterpolates) {
+  const compress::WeightSpace space{6, 5, 2, 3};
+  const raster::CellRows rows{1, 5};
+  std::vector<float> weights(4 * space.rowFloats(), 0.0f);
+  const auto at = [&](int row, int column, int texture, int expression) -> float& {
+    return weights[((toSize(row - rows.begin) * 6 + toSize(column)) * 2 + toSize(texture)) * space.lanes() +
+                   toSize(expression)];
+  };
+  at(2, 3, 0, 1) = -4.0f;
+  at(2, 3, 1, 2) = 2.0f;
+  const std::vector<raster::TilePosition> tiles = {{3, 0}, {4, 1}, {1, 0}, {3, 2}};
+  const std::vector<float> largest = compress::largestWeights(tiles, 32, 16, space, rows, weights);
+  EXPECT_THAT(largest, testing::ElementsAre(4.0f, 2.0f, 4.0f, 2.0f, 0.0f, 0.0f, 0.0f, 0.0f));
 }
 
 TEST(CodeBits, GoByTheErrorThatTheyAdd) {

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "difference_texture_sizes.hpp"
 
 namespace facezip::test {
@@ -61,8 +59,6 @@ TEST(DifferenceTextureRange, IsEmptyWithoutTiles) {
   }
 }
 
-constexpr double kAnyFar = std::numeric_limits<double>::infinity();
-
 /// Tile t of two planes reaches from -t to 2 t, and from -10 to 10.
 std::vector<TextureRange> risingTiles(int count) {
   std::vector<TextureRange> tiles;
@@ -75,10 +71,10 @@ std::vector<TextureRange> risingTiles(int count) {
 
 TEST(ClippedRange, LeavesOutTheFarthestTilesAtEachEnd) {
   const std::vector<TextureRange> tiles = risingTiles(200);
-  const std::vector<TextureRange> whole = clippedRange(tiles, 2, 0.0, kAnyFar);
+  const std::vector<TextureRange> whole = clippedRange(tiles, 2, 0.0);
   EXPECT_EQ(whole[0].min, -199.0f);
   EXPECT_EQ(whole[0].max, 398.0f);
-  const std::vector<TextureRange> clipped = clippedRange(tiles, 2, 0.01, kAnyFar);  // two of 200
+  const std::vector<TextureRange> clipped = clippedRange(tiles, 2, 0.01);  // two of 200
   EXPECT_EQ(clipped[0].min, -197.0f);
   EXPECT_EQ(clipped[0].max, 394.0f);
   EXPECT_EQ(clipped[1].min, -10.0f);
@@ -86,18 +82,27 @@ TEST(ClippedRange, LeavesOutTheFarthestTilesAtEachEnd) {
 }
 
 TEST(ClippedRange, LeavesNoTileFartherOutThanIsAllowed) {
-  const std::vector<TextureRange> clipped = clippedRange(risingTiles(200), 2, 0.01, 1.5);
+  const std::vector<float> most(400, 1.5f);
+  const std::vector<TextureRange> clipped = clippedRange(risingTiles(200), 2, 0.01, most);
   EXPECT_EQ(clipped[0].min, -197.5f) << "-199 lies 1.5 beyond; the share alone would give -197";
   EXPECT_EQ(clipped[0].max, 396.5f);
   EXPECT_EQ(clipped[1].min, -10.0f);
 }
 
+TEST(ClippedRange, GrowsByThreeQuartersAtTheMost) {
+  std::vector<TextureRange> tiles(200, {-1.0f, 3.0f});
+  tiles[7] = {-100.0f, 100.0f};
+  const std::vector<TextureRange> clipped = clippedRange(tiles, 1, 0.01, std::vector<float>(200, 0.0f));
+  EXPECT_EQ(clipped[0].min, -2.5f);
+  EXPECT_EQ(clipped[0].max, 4.5f);
+}
+
 TEST(ClippedRange, KeepsEveryTileWhereTheShareIsLessThanOne) {
-  EXPECT_EQ(clippedRange(risingTiles(20), 2, 0.01, kAnyFar)[0].max, 38.0f);
+  EXPECT_EQ(clippedRange(risingTiles(20), 2, 0.01)[0].max, 38.0f);
 }
 
 TEST(ClippedRange, IsEmptyWithoutTiles) {
-  for (const TextureRange& range : clippedRange({}, 3, 0.01, kAnyFar)) EXPECT_GT(range.min, range.max);
+  for (const TextureRange& range : clippedRange({}, 3, 0.01)) EXPECT_GT(range.min, range.max);
 }
 
 }  // namespace

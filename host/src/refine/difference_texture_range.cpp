@@ -30,11 +30,34 @@ std::vector<TextureRange> TextureRangeFinder::findPerTile(const DeviceTiles& til
 std::vector<TextureRange> TextureRangeFinder::find(const DeviceTiles& tiles, const BandShape& shape,
                                                    const cl::Buffer& textures, std::size_t first, std::size_t end) {
   const std::size_t planes = toSize(textures_count_, shape.channels);
-  return clippedRange(findPerTile(tiles, shape, textures, first, end), planes, 0.0, 0.0);
+  return clippedRange(findPerTile(tiles, shape, textures, first, end), planes, 0.0);
 }
 
+namespace {
+
+/// Ranges widened until no tile reaches beyond by more than it may, or they are kMostWidening wider: a texture of a few
+/// far texels would have coarse codes for all others.
+std::vector<TextureRange> unclamped(std::span<const TextureRange> tiles, const std::vector<TextureRange>& ranges,
+                                    std::span<const float> most) {
+  constexpr float kMostWidening = 0.75f;
+  std::vector<TextureRange> result = ranges;
+  for (std::size_t i = 0; i < most.size(); ++i) {
+    TextureRange& range = result[i % ranges.size()];
+    range.min = std::min(range.min, tiles[i].min + most[i]);
+    range.max = std::max(range.max, tiles[i].max - most[i]);
+  }
+  for (std::size_t plane = 0; plane < ranges.size(); ++plane) {
+    const float room = 0.5f * kMostWidening * (ranges[plane].max - ranges[plane].min);
+    result[plane].min = std::max(result[plane].min, ranges[plane].min - room);
+    result[plane].max = std::min(result[plane].max, ranges[plane].max + room);
+  }
+  return result;
+}
+
+}  // namespace
+
 std::vector<TextureRange> clippedRange(std::span<const TextureRange> tiles, std::size_t planes, double clipped,
-                                       double most) {
+                                       std::span<const float> most) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   std::vector<TextureRange> result(planes, {kInfinity, -kInfinity});
   const std::size_t count = tiles.size() / planes;
@@ -44,12 +67,12 @@ std::vector<TextureRange> clippedRange(std::span<const TextureRange> tiles, std:
   for (std::size_t plane = 0; plane < planes; ++plane) {
     for (std::size_t t = 0; t < count; ++t) ends[t] = tiles[t * planes + plane].min;
     std::nth_element(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(beyond), ends.end());
-    result[plane].min = std::min(ends[beyond], *std::ranges::min_element(ends) + static_cast<float>(most));
+    result[plane].min = ends[beyond];
     for (std::size_t t = 0; t < count; ++t) ends[t] = tiles[t * planes + plane].max;
     std::nth_element(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(beyond), ends.end(), std::greater<>());
-    result[plane].max = std::max(ends[beyond], *std::ranges::max_element(ends) - static_cast<float>(most));
+    result[plane].max = ends[beyond];
   }
-  return result;
+  return most.empty() ? result : unclamped(tiles, result, most);
 }
 
 void widen(std::vector<TextureRange>& whole, std::span<const TextureRange> part) {

@@ -37,10 +37,11 @@ class TextureRangeFinder {
 };
 
 /// Ranges of `planes` textures and channels from those of their tiles, [tile][plane]: all but a share of `clipped` of
-/// the tiles lie within them at either end, and those reach beyond by `most` at most. A few far texels would coarsen
-/// the codes of all others.
+/// the tiles lie within them at either end. A few far texels would coarsen the codes of all others.
+/// most  how far a tile may reach beyond, [tile][plane], where the range need not be three quarters wider for that;
+///       empty: any way
 std::vector<TextureRange> clippedRange(std::span<const TextureRange> tiles, std::size_t planes, double clipped,
-                                       double most);
+                                       std::span<const float> most = {});
 
 /// Makes every range of `whole` hold the one of `part`. An empty `whole` becomes `part`.
 void widen(std::vector<TextureRange>& whole, std::span<const TextureRange> part);

@@ -8,6 +8,7 @@
 #include "io/counts.hpp"
 #include "refine/difference_fit.hpp"
 #include "refine/difference_texture_range.hpp"
+#include "refine/tile_weights.hpp"
 #include "refine/weight_system.hpp"
 #include "refine/window_pass.hpp"
 
@@ -39,11 +40,33 @@ class FittedMap {
     return finder_.findPerTile(band.tiles, band.shape, fit.textures(), window.firstOwnTile(), window.endOfOwnTiles());
   }
 
+  /// Remembers where the free rows' tiles lie: the next window may be prepared while this one is worked on.
+  void keepTiles() {
+    const auto& tiles = window.masks().tiles;
+    own_tiles_.assign(tiles.begin() + static_cast<std::ptrdiff_t>(window.firstOwnTile()),
+                      tiles.begin() + static_cast<std::ptrdiff_t>(window.endOfOwnTiles()));
+    first_row_ = window.begin();
+  }
+
+  /// How far each plane of the free rows' tiles may be clamped for frames to change by `most`: [tile][plane].
+  std::vector<float> clippable(const WeightWindow& weights, std::span<const float> values, float most) const {
+    const std::size_t channels = toSize(window.map().map->samples->shape().channels);
+    std::vector<float> reach;
+    for (const float weight :
+         largestWeights(own_tiles_, first_row_, window.map().weight_scale, weights.space(), weights.rows(), values)) {
+      reach.insert(reach.end(), channels, most / std::max(weight, kLeastWeight));
+    }
+    return reach;
+  }
+
   MapWindow window;
   DifferenceFit fit;
 
  private:
+  static constexpr float kLeastWeight = 1e-3f;
   TextureRangeFinder finder_;
+  std::vector<raster::TilePosition> own_tiles_;
+  int first_row_ = 0;
 };
 
 /// What the sweeps over one window found.
@@ -51,6 +74,7 @@ struct WindowFit {
   std::vector<double> errors;                     ///< weighted, at the start and after each sweep
   std::vector<float> weights;                     ///< of the free rows, [row][column][C][lanes]
   std::vector<std::vector<TextureRange>> ranges;  ///< of every map, [tile][plane] of the free rows
+  std::vector<std::vector<float>> clippable;      ///< how far they may be clamped, likewise
   std::vector<double> end_errors;                 ///< of every map, plain
 };
 
@@ -79,6 +103,7 @@ class Sweeps {
     WindowRows rows{begin, end, begin, end};
     for (const auto& map : maps_) {
       map->window.load();
+      map->keepTiles();
       const raster::CellRows reached = map->window.cellRows(problem_.space.rows);
       rows.begin = std::min(rows.begin, reached.begin);
       rows.end = std::max(rows.end, reached.end);
@@ -106,7 +131,9 @@ class Sweeps {
     }
     if (by_halves_) turnOnTexels();
     found.weights = freeWeights(window_);
+    const std::vector<float> weights = window_.weights();
     for (const auto& map : maps_) {
+      found.clippable.push_back(map->clippable(window_, weights, static_cast<float>(options_.most_clipped)));
       found.ranges.push_back(map->ranges());
       found.end_errors.push_back(map->error().plain);
     }
@@ -182,6 +209,7 @@ Refinement refine(device::DeviceContext& context, const RefinementProblem& probl
   result.errors.assign(toSize(options.most_sweeps) + 1, 0.0);
   result.end_errors.assign(problem.maps.size(), 0.0);
   std::vector<std::vector<TextureRange>> tile_ranges(problem.maps.size());  // [tile][plane]
+  std::vector<std::vector<float>> clippable(problem.maps.size());           // likewise
   const int rows = problem.space.rows;
   progress.stage("refining", toSize(rows));
   Sweeps sweeps(context, problem, options);
@@ -192,6 +220,7 @@ Refinement refine(device::DeviceContext& context, const RefinementProblem& probl
     for (std::size_t i = 0; i < fit.errors.size(); ++i) result.errors[i] += fit.errors[i];
     for (std::size_t m = 0; m < problem.maps.size(); ++m) {
       tile_ranges[m].insert(tile_ranges[m].end(), fit.ranges[m].begin(), fit.ranges[m].end());
+      clippable[m].insert(clippable[m].end(), fit.clippable[m].begin(), fit.clippable[m].end());
       result.end_errors[m] += fit.end_errors[m];
     }
     progress.advance(toSize(end));
@@ -202,7 +231,7 @@ Refinement refine(device::DeviceContext& context, const RefinementProblem& probl
   const double clipped = options.most_sweeps > 0 ? options.clipped_tiles : 0.0;
   for (std::size_t m = 0; m < problem.maps.size(); ++m) {
     const std::size_t planes = toSize(problem.space.textures, problem.maps[m].map->samples->shape().channels);
-    result.ranges.push_back(clippedRange(tile_ranges[m], planes, clipped, options.most_clipped));
+    result.ranges.push_back(clippedRange(tile_ranges[m], planes, clipped, clippable[m]));
   }
   return result;
 }

@@ -29,7 +29,7 @@ struct RefinementOptions {
   double trust = 1e-4;       ///< likewise
   double ridge = 1e-4;       ///< per expression and 1 / C, the mean square of a weight
   double clipped_tiles = 0.005;  ///< share of the tiles that may reach beyond the difference textures' codes at an end
-  double most_clipped = 8.0;     ///< how far they may, in 1/255: more shows as a smear, at the corners of lips first
+  double most_clipped = 16.0;    ///< by how much that may change a frame, in 1/255: more shows as a smear
 };
 
 /// What is refined. References must outlive the call.

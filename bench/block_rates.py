@@ -65,14 +65,22 @@ def plot(work, picture):
     for ours, colour, label in ((False, "tab:gray", "every texture in blocks"), (True, "tab:blue", "facezip")):
         points = sorted((size / 1e6, rmse, title) for title, size, rmse in rows if ("facezip" in title) == ours)
         axes.plot([p[0] for p in points], [p[1] for p in points], "o", color=colour, label=label)
-        for size, rmse, title in points:
+        # Names of the points that no other of the same kind beats; those of facezip run down, the others stand above.
+        best = [p for p in points if not any(q[0] <= p[0] and q[1] <= p[1] and q != p for q in points)]
+        if ours:
+            axes.plot([p[0] for p in best], [p[1] for p in best], color=colour, linewidth=0.8)
+        for size, rmse, title in best:
             short = title.replace("**", "").replace("every texture in ", "").replace("facezip ", "").split(", weights")[0]
-            axes.annotate(short, (size, rmse), textcoords="offset points", xytext=(5, 3), fontsize=6.5, color=colour)
+            short = short.replace(", differences astc-", " / ")
+            axes.annotate(short, (size, rmse), textcoords="offset points", xytext=(2, -4) if ours else (4, 5),
+                          fontsize=7, color=colour, rotation=-40 if ours else 0, va="top" if ours else "bottom",
+                          rotation_mode="anchor")
     axes.set_xscale("log", base=2)
     axes.set_xticks([1, 2, 4, 8, 16], ["1", "2", "4", "8", "16"])
     axes.set_xlabel("memory at run time, MB")
     axes.set_ylabel("RMSE over the face, 0..255")
     axes.set_ylim(bottom=0)
+    axes.set_xlim(0.8, 34)
     axes.grid(alpha=0.3)
     axes.legend()
     figure.tight_layout()

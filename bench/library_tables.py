@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """How well faces are generated of people that were held out (Li et al. 2020, Table 2, Fig. 17 and 18).
 
     library_tables.py FACEZIP MODEL HELD WORK [--subjects 080,081,...] [--scans 26] [--maps albedo]

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """How much of a misalignment `facezip align` takes back.
     misalign.py FACEZIP CAPTURE WORK [--seed 1] [--texels 2,6] [--maps albedo]
 FACEZIP   the built command

@@ -5,7 +5,7 @@
 
 CAPTURE  with a template/ beside it, as `facezip synth --template` writes it. What it holds is scans or made up as
          CAPTURE is: say so beside the figures.
-OUTPUT   a folder, which is made: paper_tables.md, paper_tables.json, figure6.svg, figure7.svg, figure8.png
+OUTPUT   a folder, which is made: paper_tables.md, paper_tables.json, figure6.svg, figure7.svg, figure8.jpg
 
 table1   time of clustering and permutation, memory of ours, PCA(4), PCA(8) and raw textures, at 512, 1024 and 2048, of a
          rig: the template's shapes, with textures of their own. Captures are made by `facezip synth` (made-up data).
@@ -168,10 +168,11 @@ def figure8(facezip, arguments):
     rows, columns = (numpy.nonzero((numpy.abs(truth - neutral).max(axis=2) > 2).any(axis=axis))[0] for axis in (1, 0))
     cut = (slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1))
     pictures = [numpy.clip(128 + 3 * (texture - neutral)[cut], 0, 255) for texture in (naive, ours, truth)]
-    Image.fromarray(numpy.concatenate(pictures, axis=1).astype(numpy.uint8)).save(arguments.output / "figure8.png")
+    picture = Image.fromarray(numpy.concatenate(pictures, axis=1).astype(numpy.uint8))
+    picture.resize((picture.width // 2, picture.height // 2), Image.LANCZOS).save(arguments.output / "figure8.jpg", quality=85)
     lines = [f"Made-up data. Textures of {len(squares)} shapes that the poses tell apart, where they differ from the neutral, RMSE: "
              f"naive {rmse['naive']:.3f}, facezip {rmse['facezip']:.3f}, no change {rmse['no change']:.3f}. "
-             f"Changes of {shape}, threefold: naive, facezip, truth.", "", "![naive, facezip, truth](figure8.png)"]
+             f"Changes of {shape}, threefold: naive, facezip, truth.", "", "![naive, facezip, truth](figure8.jpg)"]
     return {"shape": shape, "shapes": sorted(squares), **rmse}, lines
 
 

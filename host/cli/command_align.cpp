@@ -38,8 +38,7 @@ void addAlignCommand(CLI::App& app, const CommonOptions& common) {
   command->add_flag("--keep-meshes", arguments->options.keep_meshes,
                     "Leave the meshes as they are: they are right where the textures are not");
   addDeviceOption(*command, arguments->device);
-  command->add_option("--report", arguments->report, "Also write what was found as JSON (docs/reports.md)")
-      ->type_name("FILE");
+  addReportOption(*command, arguments->report, "what was found");
   command->callback([arguments, &common] {
     TerminalProgress progress(common.quiet);
     const Capture capture = openCapture(arguments->capture, arguments->maps, &progress);

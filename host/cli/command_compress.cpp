@@ -26,15 +26,11 @@ void addCompressCommand(CLI::App& app, const CommonOptions& common) {
   command->add_option("capture", arguments->capture, "Directory of the capture (docs/capture_format.md)")
       ->required()
       ->type_name("CAPTURE");
-  command
-      ->add_option("-o,--output", arguments->output, "Directory of the package; an earlier package there is replaced")
-      ->required()
-      ->type_name("PACKAGE");
+  addPackageOutputOption(*command, arguments->output);
   addMapsOption(*command, arguments->maps, "Maps to take (default: all)");
   addCompressOptions(*command, arguments->compress);
   addDeviceOption(*command, arguments->device);
-  command->add_option("--report", arguments->report, "Also write what was done as JSON (docs/reports.md)")
-      ->type_name("FILE");
+  addReportOption(*command, arguments->report, "what was done");
   command->callback([arguments, &common] {
     const CompressOptions options = parseCompressOptions(arguments->compress);
     TerminalProgress progress(common.quiet);

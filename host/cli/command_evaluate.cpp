@@ -101,8 +101,7 @@ void addEvaluateCommand(CLI::App& app, const CommonOptions& common) {
       ->type_name("NAME");
   addDeviceOption(*command, arguments->device);
   addMemoryOption(*command, arguments->memory);
-  command->add_option("--report", arguments->report, "Also write the figures as JSON (docs/reports.md)")
-      ->type_name("FILE");
+  addReportOption(*command, arguments->report, "the figures");
   command->callback([arguments, &common] {
     if (!arguments->picture.empty() && std::filesystem::path(arguments->picture).extension() != ".png") {
       throw InputError({"--picture", "", "a file name that ends in .png", arguments->picture, ""});

@@ -31,15 +31,11 @@ void addGenerateCommand(CLI::App& app, const CommonOptions& common) {
       ->type_name("NEUTRAL");
   command->add_option("--model", arguments->model, "The model that `facezip train` wrote, of the neutral's topology")
       ->type_name("MODEL");
-  command
-      ->add_option("-o,--output", arguments->output, "Directory of the package; an earlier package there is replaced")
-      ->required()
-      ->type_name("PACKAGE");
+  addPackageOutputOption(*command, arguments->output);
   addMapsOption(*command, arguments->maps, "Maps to take (default: all)");
   addCompressOptions(*command, arguments->compress);
   addDeviceOption(*command, arguments->device);
-  command->add_option("--report", arguments->report, "Also write what was done as JSON (docs/reports.md)")
-      ->type_name("FILE");
+  addReportOption(*command, arguments->report, "what was done");
   command->callback([arguments, &common] {
     if (arguments->model.empty()) {
       throw InputError({"--model", "", "a model that `facezip train` learned from captures of many people", "none",

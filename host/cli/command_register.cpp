@@ -60,8 +60,7 @@ void addRegisterCommand(CLI::App& app, const CommonOptions& common) {
   command->add_flag("--keep-colour", arguments->options.keep_colour,
                     "Leave what the light changed between scans in the textures");
   addDeviceOption(*command, arguments->device);
-  command->add_option("--report", arguments->report, "Also write what was found as JSON (docs/reports.md)")
-      ->type_name("FILE");
+  addReportOption(*command, arguments->report, "what was found");
   command->callback([arguments, &common] {
     TerminalProgress progress(common.quiet);
     arguments->options.landmarks = arguments->landmarks;

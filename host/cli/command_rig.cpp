@@ -40,10 +40,7 @@ void addRigCommand(CLI::App& app, const CommonOptions& common) {
                    "Directory of neutral.obj and an OBJ file for each shape, of the capture's topology")
       ->required()
       ->type_name("DIR");
-  command
-      ->add_option("-o,--output", arguments->output, "Directory of the package; an earlier package there is replaced")
-      ->required()
-      ->type_name("PACKAGE");
+  addPackageOutputOption(*command, arguments->output);
   command
       ->add_option("--weights", arguments->guess,
                    "Weights of the shapes that the expressions are thought to have (.csv or .json, docs/rig.md)")
@@ -75,8 +72,7 @@ void addRigCommand(CLI::App& app, const CommonOptions& common) {
   addMapsOption(*command, arguments->maps, "Maps to take (default: all)");
   addCompressOptions(*command, arguments->compress);
   addDeviceOption(*command, arguments->device);
-  command->add_option("--report", arguments->report, "Also write what was done as JSON (docs/reports.md)")
-      ->type_name("FILE");
+  addReportOption(*command, arguments->report, "what was done");
   command->callback([arguments, damping, &common] {
     RigOptions options;
     options.compress = parseCompressOptions(arguments->compress);

@@ -10,6 +10,7 @@
 #include "facezip/report.hpp"
 #include "facezip/rig.hpp"
 #include "option_types.hpp"
+#include "shared_options.hpp"
 #include "tables.hpp"
 #include "terminal.hpp"
 
@@ -64,8 +65,7 @@ void addSolveWeightsCommand(CLI::App& app, const CommonOptions& common) {
       ->capture_default_str();
   command->add_flag("--head-motion", arguments->options.head_motion,
                     "The head moves in the meshes: take its rigid motion out of each frame");
-  command->add_option("--report", arguments->report, "Also write residuals as JSON (docs/reports.md)")
-      ->type_name("FILE");
+  addReportOption(*command, arguments->report, "residuals");
   command->callback([arguments, &common] {
     TerminalProgress progress(common.quiet);
     ProtectedPaths taken;

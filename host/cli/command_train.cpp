@@ -52,8 +52,7 @@ void addTrainCommand(CLI::App& app, const CommonOptions& common) {
       ->transform(wholeNumber())
       ->capture_default_str();
   addMapsOption(*command, arguments->options.maps, "Maps to learn (default: those that every subject has)");
-  command->add_option("--report", arguments->report, "Also write what was found as JSON (docs/reports.md)")
-      ->type_name("FILE");
+  addReportOption(*command, arguments->report, "what was found");
   command->callback([arguments, &common] {
     arguments->options.method = *findNamed<LearningMethod>(arguments->method);  // CLI11 has checked it
     TerminalProgress progress(common.quiet);

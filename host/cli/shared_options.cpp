@@ -27,6 +27,16 @@ void parseTextureFormat(const std::string& name, CompressOptions& options) {
 
 }  // namespace
 
+void addPackageOutputOption(CLI::App& command, std::string& output) {
+  command.add_option("-o,--output", output, "Directory of the package; an earlier package there is replaced")
+      ->required()
+      ->type_name("PACKAGE");
+}
+
+void addReportOption(CLI::App& command, std::string& report, const std::string& what) {
+  command.add_option("--report", report, "Also write " + what + " as JSON (docs/reports.md)")->type_name("FILE");
+}
+
 void addDeviceOption(CLI::App& command, std::string& selector) {
   command
       .add_option("--device", selector,

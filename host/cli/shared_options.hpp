@@ -18,6 +18,10 @@ void addDeviceOption(CLI::App& command, std::string& selector);
 void addMemoryOption(CLI::App& command, std::string& memory);
 /// --seed; `seed` must outlive the parsing
 void addSeedOption(CLI::App& command, std::uint64_t& seed, const std::string& description);
+/// -o, --output of a package
+void addPackageOutputOption(CLI::App& command, std::string& output);
+/// --report FILE. what  the report holds: "what was done"
+void addReportOption(CLI::App& command, std::string& report, const std::string& what);
 /// --maps a,b
 void addMapsOption(CLI::App& command, std::vector<std::string>& maps, const std::string& description);
 

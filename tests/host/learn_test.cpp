@@ -51,7 +51,7 @@ class LearnTest : public testing::Test {
   static GenerateReport generate(const fs::path& neutral, const fs::path& model, const std::string& package) {
     Progress progress;
     return generateFace(openCapture(neutral, {}, nullptr, NeutralAlone::kAllowed), model, folder() / package,
-                        quickOptions(), test::testDevice(), progress);
+                        {quickOptions(), ""}, test::testDevice(), progress);
   }
   template <typename Work>
   static std::string refusalOf(const Work& work) {

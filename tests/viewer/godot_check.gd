@@ -30,7 +30,7 @@ func describe() -> Dictionary:
 	var shapes := []
 	for i in mesh.get_blend_shape_count():
 		shapes.append(mesh.get_blend_shape_name(i))
-	var material: ShaderMaterial = face.mesh_instance.material_override
+	var material: ShaderMaterial = face.mesh_instance.get_surface_material(0)
 	var uniforms := {}
 	for entry in VisualServer.shader_get_param_list(material.shader.get_rid()):
 		var value = material.get_shader_param(entry.name)
@@ -71,7 +71,7 @@ func draw_maps() -> void:
 	for expression in request.weights:
 		face.set_weight(expression, request.weights[expression])
 	face.update_textures()
-	var source: ShaderMaterial = face.mesh_instance.material_override
+	var source: ShaderMaterial = face.mesh_instance.get_surface_material(0)
 	for map in request.maps:
 		var viewport := Viewport.new()
 		viewport.size = Vector2(map.width, map.height)

@@ -22,6 +22,7 @@ namespace facezip::rig {
 namespace {
 
 constexpr int kGutter = 8;
+constexpr double kMargin = 0.02;
 /// A cornea, or an iris behind one, stands out of the ball by more than this share of its radius.
 constexpr double kBulge = 1.03;
 
@@ -51,7 +52,9 @@ geometry::TriangleMesh sheetOf(const PartScene& scene, const geometry::TriangleM
   const Eigen::RowVector2d low = sheet.uvs.colwise().minCoeff(), high = sheet.uvs.colwise().maxCoeff();
   if (!((high - low).minCoeff() > 0.0)) return {};  // no layout: nothing can be painted
   sheet.uvs.rowwise() -= low;
-  sheet.uvs.array().rowwise() /= (high - low).array();
+  // A margin, since textures of parts repeat: roots of lashes would show beyond their tips.
+  sheet.uvs.array().rowwise() *= (1.0 - 2.0 * kMargin) / (high - low).array();
+  sheet.uvs.array() += kMargin;
   return sheet;
 }
 

@@ -46,10 +46,14 @@ func describe() -> Dictionary:
 	face._process(0.0)
 	given.append(active(material))
 	var layers := {}
-	for entry in ["albedo_differences", "normal_differences", "weights_0_0"]:
+	for entry in ["albedo_differences", "normal_differences", "weights_0_0"]:  # of every package here
 		var array: TextureArray = material.get_shader_param(entry)
 		layers[entry] = [array.get_width(), array.get_height(), array.get_depth()]
-	return {"shapes": shapes, "expressions": face.expressions, "uniforms": uniforms, "given": given, "layers": layers,
+	var surfaces := []
+	for s in mesh.get_surface_count():
+		var own: Material = face.mesh_instance.get_surface_material(s)
+		surfaces.append((own if own != null else mesh.surface_get_material(s)).get_class())
+	return {"shapes": shapes, "surfaces": surfaces, "expressions": face.expressions, "uniforms": uniforms, "given": given, "layers": layers,
 		"half_uvs": (mesh.surface_get_format(0) & ArrayMesh.ARRAY_COMPRESS_TEX_UV) != 0}
 
 

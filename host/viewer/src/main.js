@@ -242,6 +242,11 @@ globalThis.facezip = {
   get preset() { return viewer.preset(); },
   /** Names of the parts beyond the skin, those that are seen. */
   get parts() { return (viewer.head.parts ?? []).filter((part) => part.visible).map((part) => part.material.name); },
+  /** How far each of them is posed, by names of expressions. */
+  get partWeights() {
+    return (viewer.head.parts ?? []).map(({ morphTargetDictionary: index, morphTargetInfluences: pose }) =>
+      Object.fromEntries(Object.entries(index ?? {}).map(([name, i]) => [name, pose[i]])));
+  },
   get gpuBytes() { return memory.bytes; },
   /** What is shown is up to date. */
   get settled() { return viewer.changed === false; },

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <map>
@@ -24,6 +25,7 @@
 #include <vector>
 
 #include "facezip/error.hpp"
+#include "facezip/geometry/named_obj.hpp"
 #include "facezip/geometry/textured_obj.hpp"
 #include "facezip/input_file.hpp"
 
@@ -65,6 +67,12 @@ struct ObjLines {
   std::vector<int> uvs;
   std::vector<int> faces;
   bool faces_have_uvs = false;
+  // Names that the faces from `first_face` on have, of materials and of objects and groups.
+  struct Named {
+    std::size_t first_face = 0;
+    std::string name;
+  };
+  std::vector<Named> materials, groups;
 };
 
 [[noreturn]] void refuse(const std::filesystem::path& file, int line, const std::string& expected,
@@ -113,6 +121,12 @@ std::string_view nextWord(std::string_view& line) {
   const char* const end = std::find_if(begin, line.end(), isBlank);
   line = {end, line.end()};
   return {begin, end};
+}
+
+std::string trimmed(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
+  while (!text.empty() && isBlank(text.back())) text.remove_suffix(1);
+  return std::string(text);
 }
 
 // A decimal number as tinyobjloader understands it; whether it is finite shows after reading.
@@ -198,6 +212,10 @@ ObjLines scanLines(const std::filesystem::path& file, std::string_view text) {
       lines.uvs.push_back(number);
     } else if (keyword == "f") {
       scanFace(file, number, rest, lines);
+    } else if (keyword == "usemtl") {
+      lines.materials.push_back({lines.faces.size(), trimmed(rest)});
+    } else if (keyword == "o" || keyword == "g") {
+      lines.groups.push_back({lines.faces.size(), trimmed(rest)});
     }
     text = {end, text.end()};
     text.remove_prefix(text.starts_with("\r\n") ? 2 : text.empty() ? 0 : 1);
@@ -338,13 +356,30 @@ std::string readLibraries(const std::filesystem::path& file, std::string_view te
     std::string_view line = text.substr(0, text.find('\n'));
     text.remove_prefix(std::min(text.size(), line.size() + 1));
     if (nextWord(line) != "mtllib") continue;
-    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
-    while (!line.empty() && isBlank(line.back())) line.remove_suffix(1);
-    const std::filesystem::path library = besideFile(file, std::string(line));
+    const std::filesystem::path library = besideFile(file, trimmed(line));
     if (!library.empty())
       libraries += plainLines(InputFile(library, "a material library").read(kMostLibraryBytes)) + "\n";
   }
   return libraries;
+}
+
+/// What a face of the file, counted from 0, is called.
+std::string_view nameAt(const std::vector<ObjLines::Named>& names, std::size_t face) {
+  const auto after = std::ranges::upper_bound(names, face, {}, &ObjLines::Named::first_face);
+  return after == names.begin() ? std::string_view() : std::string_view((after - 1)->name);
+}
+
+std::optional<ObjMaterial> materialOf(const std::filesystem::path& file, const tinyobj::ObjReader& reader,
+                                      const std::string& name) {
+  const auto& materials = reader.GetMaterials();
+  const auto found = std::ranges::find(materials, name, &tinyobj::material_t::name);
+  if (found == materials.end()) return std::nullopt;
+  ObjMaterial material;
+  const auto share = [](double value) { return std::isfinite(value) ? std::clamp(value, 0.0, 1.0) : 1.0; };
+  for (std::size_t c = 0; c < 3; ++c) material.colour[c] = share(found->diffuse[c]);
+  material.opacity = share(found->dissolve);
+  material.texture = besideFile(file, found->diffuse_texname);
+  return material;
 }
 
 std::string formatObj(const TriangleMesh& mesh) {
@@ -383,6 +418,26 @@ TexturedMesh readTexturedObj(const std::filesystem::path& file) {
   for (int& material : textured.materials) material = material < 0 || material >= none ? none : material;
   textured.textures.emplace_back();
   return textured;
+}
+
+NamedMesh readNamedObj(const std::filesystem::path& file) {
+  const std::string text = plainLines(InputFile(file, "an OBJ file", "check the path").read(kMostBytes));
+  const ObjLines lines = scanLines(file, text);
+  const tinyobj::ObjReader reader = parse(file, text, readLibraries(file, text));
+  NamedMesh named;
+  named.mesh = meshOf(file, lines, reader).mesh;
+  const std::vector<ObjLines::Named>& of_faces = lines.materials.empty() ? lines.groups : lines.materials;
+  std::map<std::string, int, std::less<>> index;
+  for (const int polygon : named.mesh.polygons) {
+    const std::string_view name = nameAt(of_faces, static_cast<std::size_t>(polygon));
+    const auto [it, is_new] = index.emplace(name, static_cast<int>(named.names.size()));
+    if (is_new) {
+      named.names.emplace_back(name);
+      named.materials.push_back(materialOf(file, reader, named.names.back()));
+    }
+    named.of_triangle.push_back(it->second);
+  }
+  return named;
 }
 
 std::vector<std::filesystem::path> objFiles(const std::filesystem::path& folder) {

@@ -1,14 +1,17 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "cancel_on_signal.hpp"
 #include "commands.hpp"
 #include "contact_sheet.hpp"
 #include "facezip/evaluate.hpp"
+#include "facezip/learn.hpp"
 #include "facezip/reconstruct.hpp"
 #include "facezip/report.hpp"
 #include "facezip/synth.hpp"
+#include "facezip/view.hpp"
 #include "option_types.hpp"
 #include "shared_options.hpp"
 #include "tables.hpp"
@@ -22,11 +25,16 @@ struct Arguments {
   std::string output = "facezip-demo";
   std::string device = "auto";
   SynthOptions synth;
+  bool single_scan = false;
 };
 
+fs::path outputOf(const Arguments& arguments) {
+  if (arguments.output.empty()) throw InputError({"--output", "", "a name", "an empty one", ""});
+  return arguments.output;
+}
+
 void runDemo(const Arguments& arguments, Progress& progress) {
-  const fs::path output = arguments.output;
-  if (output.empty()) throw InputError({"--output", "", "a name", "an empty one", ""});
+  const fs::path output = outputOf(arguments);
   const Device device = openDevice(arguments.device, &progress);
   say("1. facezip synth --output {}\n", (output / "capture").string());
   synthesizeCapture(output / "capture", arguments.synth, progress);
@@ -48,6 +56,49 @@ void runDemo(const Arguments& arguments, Progress& progress) {
   say("\nLook at {}\n", (output / "contact_sheet.png").string());
 }
 
+/// A library of made-up people for `train`: its first has the template and says what all were asked to do.
+fs::path synthesizeLibrary(const fs::path& library, SynthOptions synth, Progress& progress) {
+  constexpr int kPeople = 12;
+  constexpr int kResolution = 256;  // that train learns from
+  synth.resolution = std::min(synth.resolution, kResolution);
+  for (int person = 0; person < kPeople; ++person, ++synth.seed) {
+    const fs::path folder = library / "subjects" / fmt::format("person_{:02}", person + 1);
+    synth.rig_template = person == 0;
+    say("   facezip synth --output {} --resolution {} --seed {}{}\n", folder.string(), synth.resolution, synth.seed,
+        person == 0 ? " --template" : "");
+    synthesizeCapture(folder, synth, progress);
+  }
+  return library / "subjects/person_01";
+}
+
+void runSingleScan(const Arguments& arguments, Progress& progress) {
+  constexpr std::uint64_t kFar = 1000;  // from the seeds of the library
+  const fs::path output = outputOf(arguments);
+  const Device device = openDevice(arguments.device, &progress);
+  const fs::path library = output / "library", model = output / "heads.model", stranger = output / "stranger",
+                 package = output / "stranger.facezip", page = output / "viewer";
+  say("1. A library of made-up people\n");
+  const fs::path first = synthesizeLibrary(library, arguments.synth, progress);
+
+  say("\n2. facezip train {} --template {} --facs {} --output {}\n\n", library.string(), (first / "template").string(),
+      (first / "weights.json").string(), model.string());
+  printTrainReport(trainModel(library, first / "template", first / "weights.json", model, {}, progress));
+
+  SynthOptions synth = arguments.synth;
+  synth.seed += kFar;
+  say("\n3. Somebody else: facezip synth --output {} --resolution {} --seed {}\n", stranger.string(), synth.resolution,
+      synth.seed);
+  synthesizeCapture(stranger, synth, progress);
+
+  say("\n4. Her neutral alone: facezip generate {} --model {} --output {}\n\n", stranger.string(), model.string(),
+      package.string());
+  const Capture neutral = openCapture(stranger, {}, &progress, NeutralAlone::kAllowed);
+  printGenerateReport(generateFace(neutral, model, package, {}, device, progress));
+
+  withPackage(package, [&](const Package& opened) { writeViewer(opened, page, progress); });
+  say("\nOpen {} in a browser, or: facezip view {}\n", (page / "index.html").string(), package.string());
+}
+
 }  // namespace
 
 void addDemoCommand(CLI::App& app, const CommonOptions& common) {
@@ -61,11 +112,14 @@ void addDemoCommand(CLI::App& app, const CommonOptions& common) {
       ->transform(wholeNumber())
       ->capture_default_str();
   addSeedOption(*command, arguments->synth.seed, "Seed of the face");
+  command->add_flag(
+      "--single-scan", arguments->single_scan,
+      "Learns from a library of made-up people instead, and makes a moving face of another one's neutral");
   addDeviceOption(*command, arguments->device);
   command->callback([arguments, &common] {
     TerminalProgress progress(common.quiet);
     const CancelOnSignal cancel(progress);
-    runDemo(*arguments, progress);
+    arguments->single_scan ? runSingleScan(*arguments, progress) : runDemo(*arguments, progress);
   });
 }
 

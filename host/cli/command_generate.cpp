@@ -19,6 +19,7 @@ void addGenerateCommand(CLI::App& app, const CommonOptions& common) {
     std::vector<std::string> maps;
     std::string device = "auto";
     std::string report;
+    std::string eyes;
     CompressArguments compress;
   };
   const auto arguments = std::make_shared<Arguments>();
@@ -32,6 +33,7 @@ void addGenerateCommand(CLI::App& app, const CommonOptions& common) {
   command->add_option("--model", arguments->model, "The model that `facezip train` wrote, of the neutral's topology")
       ->type_name("MODEL");
   addPackageOutputOption(*command, arguments->output);
+  addEyesOption(*command, arguments->eyes);
   addMapsOption(*command, arguments->maps, "Maps to take (default: all)");
   addCompressOptions(*command, arguments->compress);
   addDeviceOption(*command, arguments->device);
@@ -42,7 +44,7 @@ void addGenerateCommand(CLI::App& app, const CommonOptions& common) {
                         "facezip brings none: train one (docs/learning.md), or give the neutral the shapes of a "
                         "template with `facezip rig NEUTRAL --template DIR`"});
     }
-    const CompressOptions options = parseCompressOptions(arguments->compress);
+    const GenerateOptions options{parseCompressOptions(arguments->compress), arguments->eyes};
     TerminalProgress progress(common.quiet);
     const CancelOnSignal cancel(progress);
     const Capture neutral = openCapture(arguments->neutral, arguments->maps, &progress, NeutralAlone::kAllowed);

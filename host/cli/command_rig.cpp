@@ -25,6 +25,7 @@ void addRigCommand(CLI::App& app, const CommonOptions& common) {
     std::string texture_solve;
     bool head_motion = false;
     double texture_damping = 0.0;
+    std::string eyes;
     std::string device = "auto";
     std::string report;
     CompressArguments compress;
@@ -69,6 +70,7 @@ void addRigCommand(CLI::App& app, const CommonOptions& common) {
                        "others; damped: 0.3)")
           ->transform(decimalNumber())
           ->type_name("NUMBER");
+  addEyesOption(*command, arguments->eyes);
   addMapsOption(*command, arguments->maps, "Maps to take (default: all)");
   addCompressOptions(*command, arguments->compress);
   addDeviceOption(*command, arguments->device);
@@ -82,6 +84,7 @@ void addRigCommand(CLI::App& app, const CommonOptions& common) {
                                                                     : geometry::ShapeTransfer::kBest;
     options.fit.head_motion = arguments->head_motion;
     options.guess = arguments->guess;
+    options.eyes = arguments->eyes;
     options.texture_solve = findNamed<TextureSolve>(arguments->texture_solve);  // CLI11 has checked it
     if (damping->count() > 0) options.texture_damping = arguments->texture_damping;
     TerminalProgress progress(common.quiet);

@@ -1,5 +1,8 @@
 #include "shared_options.hpp"
 
+#include <fmt/ranges.h>
+
+#include "facezip/rig.hpp"
 #include "option_types.hpp"
 
 namespace facezip::cli {
@@ -62,6 +65,15 @@ void addSeedOption(CLI::App& command, std::uint64_t& seed, const std::string& de
 
 void addMapsOption(CLI::App& command, std::vector<std::string>& maps, const std::string& description) {
   command.add_option("--maps", maps, description)->type_name("NAME,...")->delimiter(',');
+}
+
+void addEyesOption(CLI::App& command, std::string& eyes) {
+  command
+      .add_option("--eyes", eyes,
+                  fmt::format("Irises of the template's eyes: {}, or #rrggbb for the nearest of these (default: the "
+                              "template's own, or brown)",
+                              fmt::join(irisNames(), ", ")))
+      ->type_name("NAME");
 }
 
 std::vector<std::string> mapNames(const Package& package) {

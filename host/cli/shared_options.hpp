@@ -24,6 +24,8 @@ void addPackageOutputOption(CLI::App& command, std::string& output);
 void addReportOption(CLI::App& command, std::string& report, const std::string& what);
 /// --maps a,b
 void addMapsOption(CLI::App& command, std::vector<std::string>& maps, const std::string& description);
+/// --eyes NAME, of commands that put a template's eyes into a head.
+void addEyesOption(CLI::App& command, std::string& eyes);
 
 /// The maps of a package, to open its capture with: other folders of that do not matter then.
 std::vector<std::string> mapNames(const Package& package);

@@ -24,6 +24,7 @@ public sealed class FaceZipDriver : MonoBehaviour
     private string[] expressions = new string[0];
     private int[] blendShapes = new int[0];  // -1: none of that name
     private float[] weights = new float[0];
+    private readonly List<SkinnedMeshRenderer> parts = new List<SkinnedMeshRenderer>();  // eyes, teeth: importers may set them apart
 
     private void OnEnable()
     {
@@ -56,6 +57,14 @@ public sealed class FaceZipDriver : MonoBehaviour
             else weight = head.GetBlendShapeWeight(shape) / mesh.GetBlendShapeFrameWeight(shape, mesh.GetBlendShapeFrameCount(shape) - 1);
             weights[n] = weight;
         }
+        foreach (SkinnedMeshRenderer part in parts)
+        {
+            for (int n = 0; n < part.sharedMesh.blendShapeCount; ++n)
+            {
+                int shape = mesh.GetBlendShapeIndex(part.sharedMesh.GetBlendShapeName(n));
+                if (shape >= 0) part.SetBlendShapeWeight(n, head.GetBlendShapeWeight(shape));
+            }
+        }
         head.GetPropertyBlock(block);
         block.SetFloatArray(Weights, weights);
         head.SetPropertyBlock(block);
@@ -68,6 +77,12 @@ public sealed class FaceZipDriver : MonoBehaviour
         weights = new float[expressions.Length];
         blendShapes = new int[expressions.Length];
         for (int n = 0; n < expressions.Length; ++n) blendShapes[n] = mesh.GetBlendShapeIndex(expressions[n]);
+        parts.Clear();
+        Transform above = transform.parent != null ? transform.parent : transform;
+        foreach (SkinnedMeshRenderer part in above.GetComponentsInChildren<SkinnedMeshRenderer>())
+        {
+            if (part != head && part.sharedMesh != null && part.GetComponent<FaceZipDriver>() == null) parts.Add(part);
+        }
         block = new MaterialPropertyBlock();  // an array keeps the length that it had first
     }
 }

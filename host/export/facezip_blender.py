@@ -247,8 +247,7 @@ def build(package):
     face = next(o for o in bpy.context.selected_objects if o.type == "MESH")
     material = bpy.data.materials.new(package["name"] or "face")
     material.use_nodes = True
-    face.data.materials.clear()
-    face.data.materials.append(material)
+    face.data.materials[0] = material  # the skin's; eyes, teeth and lashes keep theirs
     graph = Graph(material.node_tree)
     shader = material.node_tree.nodes["Principled BSDF"]
     shader.inputs["Roughness"].default_value = 0.5
@@ -313,10 +312,21 @@ def bake(face, graph, package, values, request):
     target.generated_color = (0, 0, 0, 0)
     node = graph.node("ShaderNodeTexImage", image=target)
     nodes.active = node
+    # Parts beyond the skin would be drawn over it: they go elsewhere.
+    scrap = bpy.data.images.new("scrap", 4, 4)
+    aside = []
+    for slot in list(face.material_slots)[1:]:
+        others = slot.material.node_tree.nodes
+        others.active = others.new("ShaderNodeTexImage")
+        others.active.image = scrap
+        aside.append((others, others.active))
     bpy.ops.object.select_all(action="DESELECT")
     face.select_set(True)
     bpy.context.view_layer.objects.active = face
     bpy.ops.object.bake(type="EMIT", margin=0)
+    for others, made in aside:
+        others.remove(made)
+    bpy.data.images.remove(scrap)
     target.filepath_raw = file
     target.file_format = "OPEN_EXR"
     target.save()

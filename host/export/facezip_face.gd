@@ -29,7 +29,7 @@ func _ready() -> void:
 	_texture.create_from_image(_image, 0)
 	_material = material.duplicate()  # every face has weights of its own
 	_material.set_shader_param("facezip_active", _texture)
-	mesh_instance.material_override = _material
+	mesh_instance.set_surface_material(0, _material)  # the skin; eyes, teeth and lashes are surfaces of their own
 	update_textures()
 
 

@@ -62,11 +62,9 @@ class RegisterBadInput : public testing::Test {
 };
 test::TemporaryDirectory* RegisterBadInput::good_ = nullptr;
 
-TEST_F(RegisterBadInput, NoScansNoNeutralNoExpressionNoLandmarks) {
+TEST_F(RegisterBadInput, NoScansNoNeutralNoLandmarks) {
   fs::remove(scans() / "landmarks.json");
   expectFailure({"landmarks.json", "no such file"});
-  fs::remove(mesh("open"));
-  expectFailure({"an expression"});
   fs::remove(mesh("neutral"));
   expectFailure({"neutral.obj"});
   fs::remove_all(scans());

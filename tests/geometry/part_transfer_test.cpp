@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
 #include "test_meshes.hpp"
 
@@ -76,6 +77,44 @@ TEST(PartTransfer, PartsAreToldApart) {
   const Parts parts = transferParts(problem);
   EXPECT_EQ(parts.count, 2);
   EXPECT_LT((parts.neutral - problem.template_neutral.bottomRows(12)).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(PartTransfer, GroupsArePlacedAsOne) {
+  PartProblem problem = problemOf(Eigen::Matrix3d::Identity(), 1.0, Eigen::RowVector3d::Zero());
+  problem.groups.assign(9, 0);
+  problem.groups[8] = 1;
+  problem.neutral.col(0) = 1.2 * problem.neutral.col(0);
+  const Parts parts = transferParts(problem);
+  EXPECT_EQ(parts.count, 2);
+  // A group keeps its form, whatever the skin does: its own rows are similar to the template's.
+  const auto edge = [](const Eigen::MatrixX3d& rows, int a, int b) { return (rows.row(a) - rows.row(b)).norm(); };
+  const Eigen::MatrixX3d before = problem.template_neutral.bottomRows(9);
+  const double scale = edge(parts.neutral, 0, 7) / edge(before, 0, 7);
+  EXPECT_NEAR(edge(parts.neutral, 2, 3), scale * edge(before, 2, 3), 1e-9);
+}
+
+// Roots of lashes go where the skin does; a part that does not lie on it keeps its form.
+TEST(PartTransfer, WhatLiesOnTheSkinBendsWithIt) {
+  const int beneath[] = {10, 16, 40, 64, 70};
+  for (const bool on_skin : {false, true}) {
+    PartProblem problem = problemOf(Eigen::Matrix3d::Identity(), 1.0, Eigen::RowVector3d::Zero());
+    problem.on_skin = {on_skin};
+    for (int i = 0; i < 5; ++i) {
+      const int skin = beneath[i];
+      problem.template_neutral.row(81 + i) = problem.template_neutral.row(skin);
+      for (Eigen::MatrixX3d& shape : problem.template_shapes) shape.row(81 + i) = shape.row(skin);
+      problem.neutral(skin, 2) += i == 2 ? -0.05 : 0.05;  // which no similarity has
+      problem.shapes[0](skin, 0) += 0.025;                // nor the template's shape
+    }
+    const Parts parts = transferParts(problem);
+    double off = 0.0, moved_off = 0.0;
+    for (int i = 0; i < 5; ++i) {
+      off = std::max(off, (parts.neutral.row(i) - problem.neutral.row(beneath[i])).norm());
+      moved_off = std::max(moved_off, (parts.shapes[0].row(i) - problem.shapes[0].row(beneath[i])).norm());
+    }
+    EXPECT_EQ(off < 1e-3, on_skin) << off;
+    EXPECT_EQ(moved_off < 1e-3, on_skin) << moved_off;
+  }
 }
 
 }  // namespace

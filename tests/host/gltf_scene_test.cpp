@@ -61,7 +61,7 @@ tinygltf::Model load(const std::filesystem::path& file) {
 }
 
 TEST(SplitVertices, SplitsAtSeamsAndDropsWhatIsNotUsed) {
-  const mesh::SplitVertices split = mesh::splitVertices(seamedSquare());
+  const mesh::SplitVertices split = mesh::splitVertices(seamedSquare().triangles, seamedSquare().uv_triangles);
   EXPECT_THAT(split.positions, ElementsAre(0, 0, 1, 2, 2, 3));
   EXPECT_THAT(split.uvs, ElementsAre(0, 3, 1, 2, 4, 5));
   EXPECT_THAT(split.corners, ElementsAre(0, 2, 3, 1, 4, 5));

@@ -7,11 +7,15 @@
 #include <cmath>
 
 #include "facezip/blend.hpp"
+#include "facezip/geometry/deformation_transfer.hpp"
 #include "facezip/geometry/obj_io.hpp"
 #include "facezip/package.hpp"
+#include "facezip/registration.hpp"
+#include "facezip/synth.hpp"
 #include "file_contents.hpp"
 #include "learn/face_model.hpp"
 #include "learn_library.hpp"
+#include "scan_set.hpp"
 #include "temporary_directory.hpp"
 #include "test_device.hpp"
 
@@ -51,7 +55,7 @@ class LearnTest : public testing::Test {
   static GenerateReport generate(const fs::path& neutral, const fs::path& model, const std::string& package) {
     Progress progress;
     return generateFace(openCapture(neutral, {}, nullptr, NeutralAlone::kAllowed), model, folder() / package,
-                        quickOptions(), test::testDevice(), progress);
+                        {quickOptions(), ""}, test::testDevice(), progress);
   }
   template <typename Work>
   static std::string refusalOf(const Work& work) {
@@ -182,6 +186,53 @@ TEST_F(LearnTest, BrokenModelsAreRefused) {
   other = whole;
   other.replace(whole.size() - 4, 4, "\xff\xff\xff\x7f", 4);  // NaN, of the slopes or the polygons
   EXPECT_NE(refused(other), "not refused");
+}
+
+// register, then generate: a raw scan of somebody's neutral, of another layout, place and unit, and nothing else of
+// hers.
+TEST(LearnScanTest, ARawScanBecomesAFaceInTwoSteps) {
+  const test::TemporaryDirectory folder;
+  Progress progress;
+  for (int person = 1; person <= 3; ++person) {
+    SynthOptions synth;
+    synth.resolution = 64;
+    synth.expressions = 12;
+    synth.maps = {"albedo"};
+    synth.seed = static_cast<std::uint64_t>(person);
+    synth.rig_template = person == 1;
+    synthesizeCapture(folder / "library" / std::to_string(person), synth, progress);
+  }
+  TrainOptions train;
+  train.resolution = 64;
+  train.rounds = 1;
+  const fs::path first = folder / "library/1";
+  trainModel(folder / "library", first / "template", first / "weights.json", folder / "model", train, progress);
+
+  const test::ScanSet stranger;
+  stranger.write(folder / "scans", folder / "template");
+  fs::remove(folder / "scans/scans/open.obj");  // the neutral alone
+  RegistrationOptions registration;
+  registration.resolution = 64;
+  registration.unit = "cm";
+  registerScans(folder / "scans", folder / "template", folder / "capture", registration, test::testDevice(), progress);
+  const Capture neutral = openCapture(folder / "capture", {}, nullptr, NeutralAlone::kAllowed);
+  EXPECT_TRUE(neutral.expressions.empty());
+  GenerateOptions options;
+  options.compress = quickOptions();
+  const GenerateReport report =
+      generateFace(neutral, folder / "model", folder / "face", options, test::testDevice(), progress);
+  EXPECT_LT(report.strangeness, 3.0);
+  EXPECT_EQ(report.rig.shapes.size(), 42u);
+
+  // Her own jaw, as the head that was scanned opens it.
+  const geometry::TriangleMesh rest = geometry::readObj(folder / "face/shapes/neutral.obj");
+  const Eigen::MatrixX3d truth = stranger.truth(0.0);
+  const Eigen::MatrixX3d opened = geometry::readObj(folder / "face/shapes/jawOpen.obj").positions - rest.positions +
+                                  geometry::readObj(folder / "face/shapes/browInnerUp.obj").positions - rest.positions;
+  const geometry::Similarity back = geometry::fitSimilarity(rest.positions, truth);
+  const Eigen::MatrixX3d moved = back.applyToVectors(opened), goal = stranger.truth(1.0) - truth;
+  EXPECT_LT((moved - goal).norm(), 0.25 * goal.norm());
+  EXPECT_NEAR(back.scale, 0.01, 2e-4);  // centimetres to metres
 }
 
 }  // namespace

@@ -80,6 +80,7 @@ function withFewerChannels(packagePath, map, channels) {
 }
 
 checkExport(join(packages, 'head'), join(work, 'head'));
+checkExport(join(packages, 'parts'), join(work, 'parts'));  // whose eyes and teeth lie in the same layout
 
 const variant = join(work, 'variant_package');
 cpSync(join(packages, 'head'), variant, { recursive: true });

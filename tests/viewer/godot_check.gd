@@ -30,7 +30,7 @@ func describe() -> Dictionary:
 	var shapes := []
 	for i in mesh.get_blend_shape_count():
 		shapes.append(mesh.get_blend_shape_name(i))
-	var material: ShaderMaterial = face.mesh_instance.material_override
+	var material: ShaderMaterial = face.mesh_instance.get_surface_material(0)
 	var uniforms := {}
 	for entry in VisualServer.shader_get_param_list(material.shader.get_rid()):
 		var value = material.get_shader_param(entry.name)
@@ -46,10 +46,14 @@ func describe() -> Dictionary:
 	face._process(0.0)
 	given.append(active(material))
 	var layers := {}
-	for entry in ["albedo_differences", "normal_differences", "weights_0_0"]:
+	for entry in ["albedo_differences", "normal_differences", "weights_0_0"]:  # of every package here
 		var array: TextureArray = material.get_shader_param(entry)
 		layers[entry] = [array.get_width(), array.get_height(), array.get_depth()]
-	return {"shapes": shapes, "expressions": face.expressions, "uniforms": uniforms, "given": given, "layers": layers,
+	var surfaces := []
+	for s in mesh.get_surface_count():
+		var own: Material = face.mesh_instance.get_surface_material(s)
+		surfaces.append((own if own != null else mesh.surface_get_material(s)).get_class())
+	return {"shapes": shapes, "surfaces": surfaces, "expressions": face.expressions, "uniforms": uniforms, "given": given, "layers": layers,
 		"half_uvs": (mesh.surface_get_format(0) & ArrayMesh.ARRAY_COMPRESS_TEX_UV) != 0}
 
 
@@ -71,7 +75,7 @@ func draw_maps() -> void:
 	for expression in request.weights:
 		face.set_weight(expression, request.weights[expression])
 	face.update_textures()
-	var source: ShaderMaterial = face.mesh_instance.material_override
+	var source: ShaderMaterial = face.mesh_instance.get_surface_material(0)
 	for map in request.maps:
 		var viewport := Viewport.new()
 		viewport.size = Vector2(map.width, map.height)

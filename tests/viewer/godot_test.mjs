@@ -98,4 +98,10 @@ await run('100 expressions, without normals', () => {
   const names = JSON.parse(readFileSync(join(packages, 'many', 'package.json'))).expressions;
   drawn('many', exportProject('many'), { [names[99]]: 0.8, [names[50]]: 0.4 });
 });
+await run('eyes and teeth are surfaces of the same mesh', () => {
+  const folder = exportProject('parts');
+  const line = runGodot(folder, '-s', check).find((text) => text.startsWith('RESULT '));
+  assert.deepEqual(JSON.parse(line.slice(7)).surfaces, ['ShaderMaterial', 'SpatialMaterial', 'SpatialMaterial']);
+  drawn('parts', folder, { jawOpen: 0.7 });
+});
 process.exit(results.failed ? 1 : 0);

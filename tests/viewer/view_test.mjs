@@ -279,6 +279,33 @@ await run('a clip weighs an expression called time', async () => {
   }
 });
 
+await run('eyes and teeth are seen, and follow the sliders, in the shaded view alone', async () => {
+  const shown = await serve(join(packages, 'parts'));
+  const page = await open(browser, shown.url);
+  assert.deepEqual(await page.evaluate(() => globalThis.facezip.parts), ['eyes', 'teeth']);
+  const seen = await screenshot(page, 'parts');
+  await page.evaluate(() => globalThis.facezip.setWeights({ jawOpen: 1 }));
+  const pose = () => page.evaluate(() => globalThis.facezip.partWeights.map((weights) => weights.jawOpen));
+  await screenshot(page, 'parts_jaw');
+  assert.deepEqual(await pose(), [1, 1]);
+  await page.click('#neutral');
+  await page.selectOption('#mode', 'texture');
+  assert.deepEqual(await page.evaluate(() => globalThis.facezip.parts), []);
+  await page.selectOption('#mode', 'shaded');
+  // The same package without its parts: what differs are the holes.
+  const bare = join(work, 'no_parts');
+  cpSync(join(packages, 'parts'), bare, { recursive: true });
+  const { parts, ...rest } = JSON.parse(readFileSync(join(bare, 'package.json')));
+  writeFileSync(join(bare, 'package.json'), JSON.stringify(rest));
+  const without = await serve(bare);
+  const empty = await open(browser, without.url);
+  assert.deepEqual(await empty.evaluate(() => globalThis.facezip.parts), []);
+  assert.ok(changedShare(seen, await screenshot(empty, 'no_parts')) > 0.0005, 'eyes are in their holes');
+  assert.deepEqual([...page.errors, ...empty.errors], []);
+  for (const each of [page, empty]) await each.close();
+  for (const each of [shown, without]) each.stop();
+});
+
 await run('100 expressions', async () => {
   const many = await serve(join(packages, 'many'));
   const crowd = await open(browser, many.url);

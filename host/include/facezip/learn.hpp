@@ -72,6 +72,11 @@ TrainReport trainModel(const std::filesystem::path& library, const std::filesyst
 ProtectedPaths trainInputs(const std::filesystem::path& library, const std::filesystem::path& template_directory,
                            const std::filesystem::path& facs);
 
+struct GenerateOptions {
+  CompressOptions compress;
+  std::string eyes;  ///< as RigOptions::eyes
+};
+
 struct GenerateReport {
   RigReport rig;  ///< of the shapes and the package; no expressions
   /// How far the neutral's components lie from the subjects that were learned from: root mean square, 1 is usual.
@@ -87,11 +92,11 @@ struct GenerateReport {
 /// Throws InputError: another topology or layout than the model's, a file that is no model or a damaged one, an option;
 /// and as compressCapture() does.
 GenerateReport generateFace(const Capture& neutral, const std::filesystem::path& model,
-                            const std::filesystem::path& package, const CompressOptions& options, const Device& device,
+                            const std::filesystem::path& package, const GenerateOptions& options, const Device& device,
                             Progress& progress);
 
 /// What generateFace() reads.
 ProtectedPaths generateInputs(const Capture& neutral, const std::filesystem::path& model,
-                              const CompressOptions& options);
+                              const GenerateOptions& options);
 
 }  // namespace facezip

@@ -80,6 +80,29 @@ struct PackageRegion {
   std::vector<int> masks;  ///< indices into the masks, each in one region at most
 };
 
+/// How parts of the head that move, but whose texture does not, look (eyes, teeth, lashes).
+struct PackageMaterial {
+  /// What a texture's alpha, and `opacity`, do.
+  enum class Alpha { kOpaque, kMask, kBlend };  ///< nothing; a texel is there from 0.5 on; how much of it is there
+
+  std::string name;                          ///< unique
+  std::array<double, 3> colour = {1, 1, 1};  ///< 0 to 1, linear light; times the texture
+  double opacity = 1.0;                      ///< 0 to 1; times the texture's alpha
+  Alpha alpha = Alpha::kOpaque;
+  double roughness = 0.6;  ///< 0 to 1
+  std::string texture;     ///< PNG of 8 bits, relative to the package, sRGB; 2 or 4 channels have alpha. "" for none
+  int width = 0;           ///< of the texture, texels
+  int height = 0;
+  int channels = 0;  ///< 1 to 4
+};
+
+/// Parts beyond the captured skin: a mesh of a primitive for each material, with the morph targets of the package's
+/// mesh.
+struct PackageParts {
+  std::string file;                        ///< glTF 2.0 binary
+  std::vector<PackageMaterial> materials;  ///< of the mesh's primitives, in their order
+};
+
 /// All that package.json says.
 struct PackageDescription {
   std::string generator;                 ///< "facezip X.Y.Z", what wrote it
@@ -89,6 +112,7 @@ struct PackageDescription {
   std::vector<PackageWeights> weights;   ///< at least one; each is used by a map
   std::vector<PackageMap> maps;
   std::string mesh_file;               ///< glTF 2.0 binary, neutral and morph targets; "" where there is none
+  std::optional<PackageParts> parts;   ///< with a mesh
   std::optional<PackageMasks> masks;   ///< with regions
   std::vector<PackageRegion> regions;  ///< empty without masks
   /// EXPERIMENTAL: a JSON object that records how the package was made; its fields may change in any version.

@@ -40,8 +40,14 @@ struct RigOptions {
   /// lambda of kLocal and kDamped, > 0; none: 0.3 for kDamped, and for kLocal what predicts each captured expression
   /// best from the others.
   std::optional<double> texture_damping;
+  /// Irises of a template's eyes: one of irisNames(), or the nearest of them to #rrggbb; empty: the template's texture,
+  /// or brown where it has none.
+  std::string eyes;
   CompressOptions compress;
 };
+
+/// Eyes that facezip paints, from dark to light.
+std::vector<std::string> irisNames();
 
 /// What is asked for, or else what belongs to the method: kPseudoInverse to the paper's (FaceZip, section 3.2), kStrain
 /// to compress and stretch maps, kLocal to the others. Throws InputError where only one of method and solve is of
@@ -78,7 +84,7 @@ struct RigReport {
   std::vector<std::string> still;   ///< shapes that move nothing
   int vertices = 0;                 ///< of the rig, parts beyond the skin included
   int skin_vertices = 0;
-  int parts = 0;  ///< connected parts beyond the skin
+  int parts = 0;  ///< pieces beyond the skin, placed for themselves
   int degenerate_triangles = 0;
   std::string texture_solve;      ///< by name
   double texture_damping = 0.0;   ///< lambda

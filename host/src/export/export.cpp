@@ -108,6 +108,28 @@ mesh::GltfMaterial plainMaterial(const Package& package, Textures textures) {
   return material;
 }
 
+/// scene.gltf, and, where the target has no copy of the package, the textures of its parts.
+void writeScene(const Package& package, Textures textures, const fs::path& folder, std::uint64_t memory_bytes) {
+  const mesh::PackageMesh mesh = mesh::readPackageMesh(package, memory_bytes);
+  const mesh::GltfMaterial material = plainMaterial(package, textures);
+  const std::optional<PackageParts>& described = package.description().parts;
+  if (!described) return mesh::addBlendToGltf(mesh, nullptr, folder / "scene.gltf", material);
+  mesh::GltfParts parts{mesh::readPackageParts(package, mesh, memory_bytes), described->materials};
+  for (std::size_t p = 0; p < parts.materials.size(); ++p) {
+    std::string& texture = parts.materials[p].texture;
+    if (texture.empty()) continue;
+    if (textures == Textures::kPackage) {
+      texture = "package/" + texture;
+      continue;
+    }
+    const std::string name = fmt::format("parts/part_{}.png", p);  // engines are not all content with any name
+    io::createDirectories(folder / "parts");
+    copyFile(package, texture, folder / name);
+    texture = name;
+  }
+  mesh::addBlendToGltf(mesh, &parts, folder / "scene.gltf", material);
+}
+
 /// A name that shells and languages take as it stands.
 bool isPlain(const std::string& name) {
   const auto letter = [](char c) { return c == '_' || ('a' <= c && c <= 'z') || ('A' <= c && c <= 'Z'); };
@@ -161,8 +183,7 @@ std::vector<std::string> exportPackage(const Package& package, const std::string
   } else {
     copyPackage(package, staged.path() / "package", memory_bytes, progress);
   }
-  mesh::addBlendToGltf(mesh::readPackageMesh(package, memory_bytes), staged.path() / "scene.gltf",
-                       plainMaterial(package, chosen.textures));
+  writeScene(package, chosen.textures, staged.path(), memory_bytes);
   for (const std::string& file : chosen.files) {
     const std::string text(exporting::embeddedExportFiles().at(file));
     const bool readme = file.ends_with(".md");

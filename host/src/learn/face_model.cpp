@@ -9,6 +9,7 @@
 #include "io/json_field.hpp"
 #include "io/safe_names.hpp"
 #include "learn/block_file.hpp"
+#include "package/guides.hpp"
 
 namespace facezip::learn {
 namespace fs = std::filesystem;
@@ -24,6 +25,7 @@ constexpr int kMostComponents = 4096;
 constexpr int kMostMaps = 64;
 constexpr int kMostSide = 4096;
 constexpr int kMostVertices = 1 << 26;
+constexpr std::uint64_t kMostTextureSide = 8192;
 
 std::uint64_t size(Eigen::Index count) { return static_cast<std::uint64_t>(count); }
 
@@ -67,7 +69,79 @@ std::string aboutJson(const FaceModel& model) {
     }
     about["maps"].push_back(std::move(map));
   }
+  if (model.face_template.parts.empty()) return about.dump(1);
+  about["parts"] = nlohmann::ordered_json::array();
+  for (const rig::TemplatePart& part : model.face_template.parts.parts) {
+    nlohmann::ordered_json json = {{"material", package::materialJson(part.material)}};
+    if (!part.texture.samples.empty()) json["channels"] = part.texture.shape.channels;
+    about["parts"].push_back(std::move(json));
+  }
   return about.dump(1);
+}
+
+std::string textureBlock(const std::string& part) { return "parts/" + part + "/texture"; }
+
+/// Four samples to a number, the first in the lowest bits; channels that an image does not have are 0.
+void addParts(Blocks& blocks, const rig::TemplateParts& parts) {
+  if (parts.empty()) return;
+  blocks.add("template/parts", Shape{parts.of_triangle.size()},
+             std::vector<std::int32_t>(parts.of_triangle.begin(), parts.of_triangle.end()));
+  for (const rig::TemplatePart& part : parts.parts) {
+    const image::Image& texture = part.texture;
+    if (texture.samples.empty()) continue;
+    const auto channels = static_cast<std::size_t>(texture.shape.channels);
+    std::vector<std::int32_t> texels;
+    for (std::size_t i = 0; i < texture.samples.size(); i += channels) {
+      std::uint32_t texel = 0;
+      for (std::size_t c = 0; c < channels; ++c) {
+        texel |= std::to_integer<std::uint32_t>(texture.samples[i + c]) << (8 * c);
+      }
+      texels.push_back(static_cast<std::int32_t>(texel));
+    }
+    blocks.add(textureBlock(part.material.name), Shape{size(texture.shape.height), size(texture.shape.width)},
+               std::move(texels));
+  }
+}
+
+image::Image readTexture(const Blocks& blocks, const std::string& name, int channels) {
+  const Shape shape = blocks.shapeOf(name, BlockType::kInteger, 2);
+  if (shape[0] < 1 || shape[1] < 1 || shape[0] > kMostTextureSide || shape[1] > kMostTextureSide) {
+    blocks.fail(name, fmt::format("1 to {} texels a side", kMostTextureSide),
+                fmt::format("{} x {}", shape[1], shape[0]));
+  }
+  image::Image texture;
+  texture.shape = {static_cast<int>(shape[1]), static_cast<int>(shape[0]), channels, SampleType::kUint8};
+  for (const std::int32_t texel : blocks.integers(name, shape)) {
+    for (int c = 0; c < channels; ++c) {
+      texture.samples.push_back(static_cast<std::byte>(static_cast<std::uint32_t>(texel) >> (8 * c)));
+    }
+  }
+  return texture;
+}
+
+/// beyond  triangles of the template beyond the skin
+rig::TemplateParts readParts(const Blocks& blocks, const io::JsonField& root, Eigen::Index beyond) {
+  rig::TemplateParts parts;
+  if (beyond == 0) return parts;
+  std::vector<std::string> names;
+  for (const io::JsonField& field : root["parts"].elements(1, package::kMostParts)) {
+    rig::TemplatePart& part = parts.parts.emplace_back();
+    part.material = package::parseMaterial(field["material"]);
+    if (std::ranges::find(names, part.material.name) != names.end()) field.fail("unique names of parts", "one twice");
+    names.push_back(part.material.name);
+    part.material.texture.clear();
+    if (field.has("channels")) {
+      part.texture = readTexture(blocks, textureBlock(part.material.name), field["channels"].integer(1, 4));
+    }
+  }
+  const std::vector<std::int32_t>& of_triangle = blocks.integers("template/parts", {size(beyond)});
+  for (const std::int32_t part : of_triangle) {
+    if (part < 0 || part >= std::ssize(parts.parts)) {
+      blocks.fail("template/parts", fmt::format("0 to {}", parts.parts.size() - 1), fmt::format("{}", part));
+    }
+  }
+  parts.of_triangle.assign(of_triangle.begin(), of_triangle.end());
+  return parts;
 }
 
 /// Numbers of a block whose second extent is known, as rows.
@@ -199,6 +273,7 @@ std::uint64_t writeModel(const fs::path& file, const FaceModel& model, Progress&
   blocks.add(kAbout, aboutJson(model));
   addMesh(blocks, "skin", model.skin);
   addMesh(blocks, "template", model.face_template.neutral);
+  addParts(blocks, model.face_template.parts);
   std::vector<float> moved;
   for (const Eigen::MatrixX3d& shape : model.face_template.shapes) {
     const RowsXf rows = (shape - model.face_template.neutral.positions).cast<float>();
@@ -231,6 +306,8 @@ FaceModel readModel(const fs::path& file) {
   model.skin = readMesh(blocks, "skin");
   const std::vector<std::string> names = readShapeNames(root["shapes"]);
   model.face_template = readTemplate(blocks, names, model.skin);
+  model.face_template.parts =
+      readParts(blocks, root, model.face_template.neutral.triangles.rows() - model.skin.triangles.rows());
   const auto components = static_cast<std::uint64_t>(root["components"].integer(1, kMostComponents));
   const Eigen::Index vertices = model.skin.positions.rows();
   model.shapes.identity.mean = model.skin.positions;

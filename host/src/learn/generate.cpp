@@ -17,6 +17,7 @@
 #include "learn/library.hpp"
 #include "learn/texture_learning.hpp"
 #include "package/footprint.hpp"
+#include "rig/iris.hpp"
 #include "rig/shape_package.hpp"
 
 namespace facezip {
@@ -139,18 +140,19 @@ std::vector<CaptureMap> generateTextures(const Capture& capture, const FaceModel
 
 }  // namespace
 
-ProtectedPaths generateInputs(const Capture& neutral, const fs::path& model, const CompressOptions& options) {
-  return inputsOf(neutral, options).addFile(model, "the model that is read");
+ProtectedPaths generateInputs(const Capture& neutral, const fs::path& model, const GenerateOptions& options) {
+  return inputsOf(neutral, options.compress).addFile(model, "the model that is read");
 }
 
 GenerateReport generateFace(const Capture& capture, const fs::path& file, const fs::path& package,
-                            const CompressOptions& options, const Device& device, Progress& progress) {
+                            const GenerateOptions& options, const Device& device, Progress& progress) {
+  rig::findIris(options.eyes, "--eyes");
   generateInputs(capture, file, options).requireApartFromFolder(package);
   io::StageClock clock;
   io::StagedDirectory staged(package, package::footprint(), &progress);
   progress.stage("reading the model", 0);
   FaceModel model = readModel(file);
-  const Subject subject = readSubject(capture, model, file, options.unit.value_or(""), progress);
+  const Subject subject = readSubject(capture, model, file, options.compress.unit.value_or(""), progress);
   clock.book("reading the model");
 
   GenerateReport report;
@@ -173,7 +175,7 @@ GenerateReport generateFace(const Capture& capture, const fs::path& file, const 
 
   geometry::TriangleMesh in_frame = subject.neutral;
   in_frame.positions = identity.neutral;
-  const std::vector<int> region = compress::readFace(capture, options.region).region;
+  const std::vector<int> region = compress::readFace(capture, options.compress.region).region;
   const fs::path scratch = staged.path() / ".textures";  // a name that no map has
   const std::vector<CaptureMap> textures =
       generateTextures(capture, model, in_frame, region, shapes, scratch, report, progress);
@@ -182,7 +184,8 @@ GenerateReport generateFace(const Capture& capture, const fs::path& file, const 
                               fmt::join(report.left_alone, ", ")));
   }
   clock.book("textures");
-  rig::writeShapePackage(capture, face, textures, options, staged.path(), device, progress, report.rig);
+  rig::writeShapePackage(capture, face, textures, options.compress, options.eyes, staged.path(), device, progress,
+                         report.rig);
   report.rig.transfer = "model";
   fs::remove_all(scratch);
   clock.book("compressing");

@@ -133,9 +133,10 @@ TrainReport trainModel(const fs::path& library_directory, const fs::path& templa
   trainInputs(library_directory, template_directory, facs).requireApart(file);
   io::StageClock clock;
   progress.stage("opening the library", 0);
-  const rig::RigTemplate rig_template = rig::readTemplate(template_directory, progress);
+  rig::RigTemplate rig_template = rig::readTemplate(template_directory, progress);
   const Library library = openLibrary(library_directory, facs, rig_template.names, options.maps, progress);
   LibraryMeshes meshes = readLibraryMeshes(library, rig_template, progress);
+  rig_template.parts = rig::readTemplateParts(rig_template.neutral_file, rig_template.neutral, meshes.first);
   clock.book("reading meshes");
 
   FaceModel model;

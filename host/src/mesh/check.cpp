@@ -26,6 +26,13 @@ std::vector<package::StoredTexture> texturesOf(const PackageDescription& descrip
     textures.push_back(package::neutralTexture(map));
     for (int i = 0; i < description.differences; ++i) textures.push_back(package::differenceTexture(map, i));
   }
+  if (description.parts) {
+    for (const PackageMaterial& material : description.parts->materials) {
+      if (!material.texture.empty()) {
+        textures.push_back({material.texture, std::nullopt, package::textureShape(material)});
+      }
+    }
+  }
   if (description.masks) {
     textures.push_back({description.masks->file, std::nullopt, package::masksShape(*description.masks)});
   }
@@ -72,7 +79,10 @@ int texturesAtOnce(const std::vector<package::StoredTexture>& textures, std::uin
 }  // namespace
 
 void checkMesh(const Package& package, std::uint64_t memory_bytes) {
-  if (!package.description().mesh_file.empty()) mesh::readPackageMesh(package, memory_bytes);
+  const PackageDescription& description = package.description();
+  if (description.mesh_file.empty()) return;
+  const mesh::PackageMesh mesh = mesh::readPackageMesh(package, memory_bytes);
+  if (description.parts) mesh::readPackageParts(package, mesh, memory_bytes);
 }
 
 void checkTexels(const Package& package, Progress& progress, std::uint64_t memory_bytes) {

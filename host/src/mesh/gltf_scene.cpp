@@ -49,16 +49,18 @@ std::vector<float> gather(const Eigen::MatrixXd& matrix, std::span<const int> ro
   return values;
 }
 
-tinygltf::Primitive makePrimitive(const GltfScene& scene, GltfBuffer& accessors) {
-  const SplitVertices split = splitVertices(scene.neutral);
+/// The scene's positions and targets, as these triangles of them.
+tinygltf::Primitive makePrimitive(const GltfScene& scene, const Eigen::MatrixX3i& triangles,
+                                  const Eigen::MatrixX3i& uv_triangles, GltfBuffer& accessors) {
+  const SplitVertices split = splitVertices(triangles, uv_triangles);
   const Eigen::MatrixX3d neutral = scene.neutral.positions * scene.metres_per_unit;
-  const Eigen::MatrixX3d normals = vertexNormals(neutral, scene.neutral.triangles);
+  const Eigen::MatrixX3d normals = vertexNormals(neutral, triangles);
   tinygltf::Primitive primitive;
   primitive.mode = TINYGLTF_MODE_TRIANGLES;
   primitive.indices = accessors.addIndices(split.corners);
   primitive.attributes["POSITION"] = accessors.addFloats(gather(neutral, split.positions), 3, true);
   primitive.attributes["NORMAL"] = accessors.addFloats(gather(normals, split.positions), 3, false);
-  if (scene.neutral.uvs.rows() > 0) {
+  if (uv_triangles.rows() > 0) {
     Eigen::MatrixX2d uvs = scene.neutral.uvs;
     uvs.col(1) = 1.0 - uvs.col(1).array();
     primitive.attributes["TEXCOORD_0"] = accessors.addFloats(gather(uvs, split.uvs), 2, false);
@@ -69,7 +71,7 @@ tinygltf::Primitive makePrimitive(const GltfScene& scene, GltfBuffer& accessors)
                         fmt::format("{}", target.positions.rows()), ""});
     }
     const Eigen::MatrixX3d moved = target.positions * scene.metres_per_unit;
-    const Eigen::MatrixX3d turned = vertexNormals(moved, scene.neutral.triangles);
+    const Eigen::MatrixX3d turned = vertexNormals(moved, triangles);
     std::map<std::string, int>& attributes = primitive.targets.emplace_back();
     attributes["POSITION"] = accessors.addSparse(gather(moved - neutral, split.positions), true);
     attributes["NORMAL"] = accessors.addSparse(gather(turned - normals, split.positions), false);
@@ -88,35 +90,41 @@ std::string percentEncoded(const std::string& path) {
   return uri;
 }
 
-int addTexture(tinygltf::Model& model, const std::string& uri) {
+int addSampler(tinygltf::Model& model, int wrap) {
+  tinygltf::Sampler sampler;
+  sampler.minFilter = TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR;
+  sampler.magFilter = TINYGLTF_TEXTURE_FILTER_LINEAR;
+  sampler.wrapS = sampler.wrapT = wrap;
+  model.samplers.push_back(std::move(sampler));
+  return static_cast<int>(model.samplers.size()) - 1;
+}
+
+int addTexture(tinygltf::Model& model, const std::string& uri, int sampler) {
   tinygltf::Image image;
   image.uri = percentEncoded(uri);
   model.images.push_back(std::move(image));
   tinygltf::Texture texture;
   texture.source = static_cast<int>(model.images.size()) - 1;
-  texture.sampler = 0;
+  texture.sampler = sampler;
   model.textures.push_back(std::move(texture));
   return static_cast<int>(model.textures.size()) - 1;
 }
 
 /// Puts textures and extras into `material`, a material of `model`.
 void setMaterial(const GltfMaterial& from, tinygltf::Material& material, tinygltf::Model& model) {
-  if (!(from.base_colour_texture + from.normal_texture + from.roughness_texture + from.occlusion_texture).empty()) {
-    tinygltf::Sampler sampler;
-    sampler.minFilter = TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR;
-    sampler.magFilter = TINYGLTF_TEXTURE_FILTER_LINEAR;
-    sampler.wrapS = sampler.wrapT = TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
-    model.samplers.push_back(std::move(sampler));
-  }
+  const bool textured =
+      !(from.base_colour_texture + from.normal_texture + from.roughness_texture + from.occlusion_texture).empty();
+  const int sampler = textured ? addSampler(model, TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) : -1;
+  const auto add = [&](const std::string& file) { return addTexture(model, file, sampler); };
   if (!from.base_colour_texture.empty()) {
-    material.pbrMetallicRoughness.baseColorTexture.index = addTexture(model, from.base_colour_texture);
+    material.pbrMetallicRoughness.baseColorTexture.index = add(from.base_colour_texture);
   }
-  if (!from.normal_texture.empty()) material.normalTexture.index = addTexture(model, from.normal_texture);
+  if (!from.normal_texture.empty()) material.normalTexture.index = add(from.normal_texture);
   if (!from.roughness_texture.empty()) {  // whose green counts; metal, its blue, times 0
-    material.pbrMetallicRoughness.metallicRoughnessTexture.index = addTexture(model, from.roughness_texture);
+    material.pbrMetallicRoughness.metallicRoughnessTexture.index = add(from.roughness_texture);
     material.pbrMetallicRoughness.roughnessFactor = 1.0;
   }
-  if (!from.occlusion_texture.empty()) material.occlusionTexture.index = addTexture(model, from.occlusion_texture);
+  if (!from.occlusion_texture.empty()) material.occlusionTexture.index = add(from.occlusion_texture);
   if (from.extras.is_object()) material.extras = toValue(from.extras);
 }
 
@@ -129,11 +137,72 @@ tinygltf::Material makeMaterial(const GltfScene& scene, tinygltf::Model& model) 
   return material;
 }
 
-tinygltf::Mesh makeMesh(const GltfScene& scene, tinygltf::Primitive primitive) {
+/// The material of a part, its texture included. UVs of parts may lie in tiles beyond the first: textures repeat.
+tinygltf::Material makeMaterial(const PackageMaterial& part, tinygltf::Model& model) {
+  tinygltf::Material material;
+  material.name = part.name;
+  tinygltf::PbrMetallicRoughness& look = material.pbrMetallicRoughness;
+  look.baseColorFactor = {part.colour[0], part.colour[1], part.colour[2], part.opacity};
+  look.metallicFactor = 0.0;
+  look.roughnessFactor = part.roughness;
+  if (!part.texture.empty()) {
+    look.baseColorTexture.index = addTexture(model, part.texture, addSampler(model, TINYGLTF_TEXTURE_WRAP_REPEAT));
+  }
+  const nlohmann::json json = materialJson(part);
+  material.alphaMode = json.value("alphaMode", "OPAQUE");
+  material.doubleSided = json.value("doubleSided", false);
+  return material;
+}
+
+/// Appends what `from` has in its buffer to that of `to`, and its one mesh's primitives to the one of `to`.
+void appendPrimitives(const tinygltf::Model& from, tinygltf::Model& to) {
+  std::vector<unsigned char>& data = to.buffers.at(0).data;
+  data.resize((data.size() + 3) / 4 * 4);
+  const auto views = static_cast<int>(to.bufferViews.size());
+  const auto first = static_cast<int>(to.accessors.size());
+  const auto material = static_cast<int>(to.materials.size());
+  for (tinygltf::BufferView view : from.bufferViews) {
+    view.byteOffset += data.size();
+    to.bufferViews.push_back(std::move(view));
+  }
+  const std::vector<unsigned char>& bytes = from.buffers.at(0).data;
+  data.insert(data.end(), bytes.begin(), bytes.end());
+  for (tinygltf::Accessor accessor : from.accessors) {
+    if (accessor.bufferView >= 0) accessor.bufferView += views;
+    if (accessor.sparse.isSparse) {
+      accessor.sparse.indices.bufferView += views;
+      accessor.sparse.values.bufferView += views;
+    }
+    to.accessors.push_back(std::move(accessor));
+  }
+  for (tinygltf::Primitive primitive : from.meshes.at(0).primitives) {
+    for (auto& [name, accessor] : primitive.attributes) accessor += first;
+    for (std::map<std::string, int>& target : primitive.targets) {
+      for (auto& [name, accessor] : target) accessor += first;
+    }
+    primitive.indices += first;
+    primitive.material += material;
+    to.meshes.at(0).primitives.push_back(std::move(primitive));
+  }
+}
+
+tinygltf::Model loadMesh(const PackageMesh& mesh) {
+  const std::string file = packageMeshFile(mesh);
+  tinygltf::Model model;
+  std::string error, warning;
+  tinygltf::TinyGLTF loader;
+  loader.SetFsCallbacks({});  // no file is needed, and none is to be had
+  const bool loaded =
+      loader.LoadBinaryFromMemory(&model, &error, &warning, reinterpret_cast<const unsigned char*>(file.data()),
+                                  static_cast<unsigned int>(file.size()));
+  if (!loaded) throw Error(fmt::format("the mesh of the package cannot be exported: {}", error));
+  return model;
+}
+
+tinygltf::Mesh makeMesh(const GltfScene& scene, std::vector<tinygltf::Primitive> primitives) {
   tinygltf::Mesh mesh;
   mesh.name = scene.name;
-  primitive.material = 0;
-  mesh.primitives.push_back(std::move(primitive));
+  mesh.primitives = std::move(primitives);
   mesh.weights.assign(scene.targets.size(), 0.0);
   tinygltf::Value::Array names;
   for (const MorphTarget& target : scene.targets) names.emplace_back(target.name);
@@ -171,13 +240,13 @@ void save(const tinygltf::Model& model, const fs::path& file) {
 
 }  // namespace
 
-SplitVertices splitVertices(const geometry::TriangleMesh& mesh) {
-  const bool has_uvs = mesh.uv_triangles.rows() > 0;
+SplitVertices splitVertices(const Eigen::MatrixX3i& triangles, const Eigen::MatrixX3i& uv_triangles) {
+  const bool has_uvs = uv_triangles.rows() > 0;
   const auto corner = [&](Eigen::Index t, int c) {
-    return std::pair(mesh.triangles(t, c), has_uvs ? mesh.uv_triangles(t, c) : -1);
+    return std::pair(triangles(t, c), has_uvs ? uv_triangles(t, c) : -1);
   };
   std::vector<std::pair<int, int>> pairs;
-  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
     for (int c = 0; c < 3; ++c) pairs.push_back(corner(t, c));
   }
   std::ranges::sort(pairs);
@@ -187,7 +256,7 @@ SplitVertices splitVertices(const geometry::TriangleMesh& mesh) {
     split.positions.push_back(position);
     split.uvs.push_back(uv);
   }
-  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
     for (int c = 0; c < 3; ++c) {
       split.corners.push_back(static_cast<int>(std::ranges::lower_bound(pairs, corner(t, c)) - pairs.begin()));
     }
@@ -217,11 +286,15 @@ Eigen::MatrixX3d vertexNormals(const Eigen::MatrixX3d& positions, const Eigen::M
 
 Eigen::RowVector3d recentre(GltfScene& scene) {
   const Eigen::RowVector3d origin = geometry::floatOrigin(scene.neutral.positions);
-  if (origin.isZero(0.0)) return origin;
+  recentre(scene, origin);
+  return origin;
+}
+
+void recentre(GltfScene& scene, const Eigen::RowVector3d& origin) {
+  if (origin.isZero(0.0)) return;
   scene.origin += origin;
   scene.neutral.positions.rowwise() -= origin;
   for (MorphTarget& target : scene.targets) target.positions.rowwise() -= origin;
-  return origin;
 }
 
 void writeGltf(const fs::path& file, const GltfScene& scene) {
@@ -230,9 +303,17 @@ void writeGltf(const fs::path& file, const GltfScene& scene) {
   model.asset.generator = "facezip " FACEZIP_VERSION;
   model.buffers.emplace_back();
   GltfBuffer accessors(model);
-  tinygltf::Primitive primitive = makePrimitive(scene, accessors);
-  model.materials.push_back(makeMaterial(scene, model));
-  model.meshes.push_back(makeMesh(scene, std::move(primitive)));
+  std::vector<tinygltf::Primitive> primitives;
+  if (scene.neutral.triangles.rows() > 0) {
+    primitives.push_back(makePrimitive(scene, scene.neutral.triangles, scene.neutral.uv_triangles, accessors));
+    model.materials.push_back(makeMaterial(scene, model));
+  }
+  for (const ScenePart& part : scene.parts) {
+    primitives.push_back(makePrimitive(scene, part.triangles, part.uv_triangles, accessors));
+    model.materials.push_back(makeMaterial(part.material, model));
+  }
+  for (std::size_t p = 0; p < primitives.size(); ++p) primitives[p].material = static_cast<int>(p);
+  model.meshes.push_back(makeMesh(scene, std::move(primitives)));
   tinygltf::Node node;
   node.name = scene.name;
   node.mesh = 0;
@@ -245,17 +326,13 @@ void writeGltf(const fs::path& file, const GltfScene& scene) {
   save(model, file);
 }
 
-void addBlendToGltf(const PackageMesh& mesh, const fs::path& to, const GltfMaterial& material) {
-  const std::string file = mesh::packageMeshFile(mesh);
-  tinygltf::Model model;
-  std::string error, warning;
-  tinygltf::TinyGLTF loader;
-  loader.SetFsCallbacks({});  // no file is needed, and none is to be had
-  const bool loaded =
-      loader.LoadBinaryFromMemory(&model, &error, &warning, reinterpret_cast<const unsigned char*>(file.data()),
-                                  static_cast<unsigned int>(file.size()));
-  if (!loaded) throw Error(fmt::format("the mesh of the package cannot be exported: {}", error));
+void addBlendToGltf(const PackageMesh& mesh, const GltfParts* parts, const fs::path& to, const GltfMaterial& material) {
+  tinygltf::Model model = loadMesh(mesh);
   setMaterial(material, model.materials.at(0), model);
+  if (parts != nullptr) {
+    appendPrimitives(loadMesh(parts->mesh), model);
+    for (const PackageMaterial& part : parts->materials) model.materials.push_back(makeMaterial(part, model));
+  }
   addTangents(model);  // whatever shader draws it may have a normal map
   save(model, to);
 }

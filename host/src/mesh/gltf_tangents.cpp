@@ -68,10 +68,7 @@ Eigen::Matrix4Xf tangentsOf(const Vectors& positions, const Vectors& normals, co
   return tangents;
 }
 
-}  // namespace
-
-void addTangents(tinygltf::Model& model) {
-  tinygltf::Primitive& primitive = model.meshes.at(0).primitives.at(0);
+void addTangents(tinygltf::Primitive& primitive, tinygltf::Model& model) {
   std::map<std::string, int>& attributes = primitive.attributes;
   if (attributes.contains("TANGENT") || !attributes.contains("NORMAL") || !attributes.contains("TEXCOORD_0")) return;
   const std::vector<std::uint32_t> indices = readIndices(model, primitive.indices);
@@ -88,6 +85,12 @@ void addTangents(tinygltf::Model& model) {
     const Vectors change = tangentsOf(moved, turned, uvs, indices).topRows<3>() - tangents.topRows<3>();
     target["TANGENT"] = buffer.addSparse({change.data(), static_cast<std::size_t>(change.size())}, false);
   }
+}
+
+}  // namespace
+
+void addTangents(tinygltf::Model& model) {
+  for (tinygltf::Primitive& primitive : model.meshes.at(0).primitives) addTangents(primitive, model);
 }
 
 }  // namespace facezip::mesh

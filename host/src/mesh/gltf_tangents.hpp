@@ -6,10 +6,10 @@
 
 namespace facezip::mesh {
 
-/// Gives the first primitive of a model TANGENT, and its targets what they change of it, where it has normals and UVs
-/// and no tangents yet. Readers make up what is missing, for every vertex of its own, and some lose the targets' order
-/// by that. Tangents are those of glTF: along rising u, orthogonal to the normal, w the side of the bitangent, which
-/// runs against v. Each triangle counts by its angle at the vertex, as MikkTSpace has it.
+/// Gives the primitives of a model TANGENT, and their targets what they change of it, where they have normals and
+/// UVs and no tangents yet. Readers make up what is missing, for every vertex of its own, and some lose the targets'
+/// order by that. Tangents are those of glTF: along rising u, orthogonal to the normal, w the side of the bitangent,
+/// which runs against v. Each triangle counts by its angle at the vertex, as MikkTSpace has it.
 void addTangents(tinygltf::Model& model);
 
 }  // namespace facezip::mesh

@@ -85,6 +85,10 @@ std::string roleName(MapRole role) {
   return "";
 }
 
+bool nameHolds(const std::string& name, const std::vector<std::string>& words) {
+  return holdsAny(wordsOf(name), words);
+}
+
 MapRole roleOf(const std::string& name) {
   const std::vector<std::string> words = wordsOf(name);
   for (const Entry& entry : table()) {

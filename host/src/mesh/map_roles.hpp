@@ -20,6 +20,9 @@ std::string roleName(MapRole role);
 /// the words that speak against it: a normal map for DirectX has its y down, a specular albedo is no albedo.
 MapRole roleOf(const std::string& name);
 
+/// Does a name hold one of the words, as roleOf() looks for them?
+bool nameHolds(const std::string& name, const std::vector<std::string>& words);
+
 /// Roles of the maps in their order; of maps of floats, which no target shows, kOther.
 std::vector<MapRole> rolesOf(const std::vector<PackageMap>& maps);
 

@@ -1,6 +1,7 @@
 #include "mesh/package_mesh.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <set>
@@ -86,50 +87,77 @@ json targetNamesJson(const JsonField& mesh, std::size_t targets) {
 }
 
 /// Arrays of zeros take room in loaders, and none in the file.
-void requireNoLargerZeros(const JsonField& root, const GltfAccessors& accessors, std::size_t vertices) {
+void requireNoLargerZeros(const JsonField& root, const GltfAccessors& accessors,
+                          const std::set<std::size_t>& vertices) {
   const std::vector<JsonField> fields = root["accessors"].elements(0, accessors.size());
   for (std::size_t i = 0; i < accessors.size(); ++i) {
-    if (accessors[i].elements || accessors[i].count == vertices) continue;
-    fields[i]["count"].fail(fmt::format("{}, the number of vertices", vertices), fields[i]["count"].got());
+    if (accessors[i].elements || vertices.contains(accessors[i].count)) continue;
+    fields[i]["count"].fail(fmt::format("{}, the number of vertices", fmt::join(vertices, " or ")),
+                            fields[i]["count"].got());
   }
 }
 
-/// The mesh anew, of what is known.
-json meshJson(const JsonField& root, const GltfAccessors& accessors, PackageMesh& found) {
-  const JsonField mesh = root["meshes"].elements(1, 1)[0];
-  const JsonField primitive = mesh["primitives"].elements(1, 1)[0];
+/// A primitive anew, of what is known; of the vertices and targets it takes the room left.
+json primitiveJson(const JsonField& primitive, const GltfAccessors& accessors, std::size_t& vertices,
+                   std::size_t& room) {
   if (primitive.has("mode")) primitive["mode"].integer(4, 4);  // triangles
   const JsonField position = primitive["attributes"]["POSITION"];
   if (!accessors.at(position).elements) position.fail("positions that are stored", "none");
-  found.vertices = accessors.at(position).count;
-  requireTriangles(primitive["indices"], accessors, found.vertices);
-  json clean = {{"attributes", attributesJson(primitive["attributes"], kOfMesh, accessors, found.vertices)},
+  vertices = accessors.at(position).count;
+  requireTriangles(primitive["indices"], accessors, vertices);
+  json clean = {{"attributes", attributesJson(primitive["attributes"], kOfMesh, accessors, vertices)},
                 {"indices", primitive["indices"].integer(0, static_cast<int>(accessors.size()))},
-                {"material", 0},
                 {"mode", 4}};
-  if (primitive.has("targets")) {
-    for (const JsonField& target : primitive["targets"].elements(0, kMostTargets)) {
-      json attributes = attributesJson(target, kOfTargets, accessors, found.vertices);
-      if (!attributes.contains("POSITION")) target.fail("a target that moves positions", "another");
-      clean["targets"].push_back(std::move(attributes));
-    }
-    found.targets = clean.contains("targets") ? clean["targets"].size() : 0;
-    if (found.targets * found.vertices > kMostMovedVertices) {
-      primitive["targets"].fail(fmt::format("targets times vertices of at most {}", kMostMovedVertices),
-                                fmt::format("{} x {}", found.targets, found.vertices));
-    }
+  if (!primitive.has("targets")) return clean;
+  const std::vector<JsonField> targets = primitive["targets"].elements(0, kMostTargets);
+  if (targets.size() * vertices > room) {
+    primitive["targets"].fail(fmt::format("targets times vertices of at most {}", kMostMovedVertices),
+                              fmt::format("{} x {}", targets.size(), vertices));
   }
-  requireNoLargerZeros(root, accessors, found.vertices);
-  json whole = {{"name", mesh.has("name") ? mesh["name"].text() : "face"}, {"primitives", json::array({clean})}};
+  room -= targets.size() * vertices;
+  for (const JsonField& target : targets) {
+    json attributes = attributesJson(target, kOfTargets, accessors, vertices);
+    if (!attributes.contains("POSITION")) target.fail("a target that moves positions", "another");
+    clean["targets"].push_back(std::move(attributes));
+  }
+  return clean;
+}
+
+/// The mesh anew, of what is known. Each primitive has the material of its number, and all have as many targets.
+json meshJson(const JsonField& root, const GltfAccessors& accessors, std::size_t primitives, PackageMesh& found) {
+  const JsonField mesh = root["meshes"].elements(1, 1)[0];
+  json clean = json::array();
+  std::set<std::size_t> counts;
+  std::size_t room = kMostMovedVertices;
+  for (const JsonField& primitive : mesh["primitives"].elements(primitives, primitives)) {
+    std::size_t vertices = 0;
+    json one = primitiveJson(primitive, accessors, vertices, room);
+    one["material"] = clean.size();
+    const std::size_t targets = one.contains("targets") ? one["targets"].size() : 0;
+    if (clean.empty()) found.targets = targets;
+    if (targets != found.targets) {
+      primitive.fail(fmt::format("{} targets as the first has", found.targets), fmt::format("{}", targets));
+    }
+    found.vertices += vertices;
+    counts.insert(vertices);
+    clean.push_back(std::move(one));
+  }
+  requireNoLargerZeros(root, accessors, counts);
+  json whole = {{"name", mesh.has("name") ? mesh["name"].text() : "face"}, {"primitives", std::move(clean)}};
   if (found.targets == 0) return whole;
   whole["weights"] = std::vector<double>(found.targets, 0.0);
   whole["extras"] = {{"targetNames", targetNamesJson(mesh, found.targets)}};
   return whole;
 }
 
-}  // namespace
+const json& targetNamesOf(const PackageMesh& mesh) {
+  static const json none = json::array();
+  const json& found = mesh.document.at("meshes")[0];
+  return found.contains("extras") ? found["extras"]["targetNames"] : none;
+}
 
-PackageMesh parsePackageMesh(std::string glb, const std::string& file) {
+/// materials  of the primitives; null: one, whose name is the mesh's
+PackageMesh parseMesh(std::string glb, const std::string& file, json materials) {
   PackageMesh mesh;
   mesh.file = std::make_shared<const std::string>(std::move(glb));
   const GlbParts parts = splitGlb(std::as_bytes(std::span(*mesh.file)), file);
@@ -141,14 +169,15 @@ PackageMesh parsePackageMesh(std::string glb, const std::string& file) {
   for (const char* key : {"extensionsRequired", "images", "textures"}) requireNone(root, key);
   mesh.buffer = bufferOf(root, parts.binary);
   const GltfAccessors accessors(root, mesh.buffer);
-  json found = meshJson(root, accessors, mesh);
+  json found = meshJson(root, accessors, materials.is_null() ? 1 : materials.size(), mesh);
   const json name = found["name"];
   const json skin = {{"metallicFactor", 0.0}, {"roughnessFactor", 0.6}};
+  if (materials.is_null()) materials = json::array({{{"name", name}, {"pbrMetallicRoughness", skin}}});
   mesh.document = {{"asset", {{"version", "2.0"}, {"generator", "facezip " FACEZIP_VERSION}}},
                    {"buffers", json::array({{{"byteLength", mesh.buffer.size()}}})},
                    {"bufferViews", accessors.viewsJson()},
                    {"accessors", accessors.accessorsJson()},
-                   {"materials", json::array({{{"name", name}, {"pbrMetallicRoughness", skin}}})},
+                   {"materials", std::move(materials)},
                    {"meshes", json::array({std::move(found)})},
                    {"nodes", json::array({{{"mesh", 0}, {"name", name}}})},
                    {"scenes", json::array({{{"nodes", json::array({0})}}})},
@@ -156,13 +185,52 @@ PackageMesh parsePackageMesh(std::string glb, const std::string& file) {
   return mesh;
 }
 
+/// The file's bytes, where they, their text as values and, if it is exported, three copies of its numbers have room.
+std::string readWhole(const Package& package, const std::string& name, std::uint64_t memory_bytes) {
+  const InputFile file = package.folder().open(name, "the mesh of the package", "write the package again");
+  io::requireMemory(5 * file.size(), memory_bytes, (package.directory() / name).string());
+  return file.read(kMostMeshBytes);
+}
+
+}  // namespace
+
+PackageMesh parsePackageMesh(std::string glb, const std::string& file) { return parseMesh(std::move(glb), file, {}); }
+
+PackageMesh parsePackageParts(std::string glb, const std::string& file, const PackageParts& parts,
+                              const PackageMesh& mesh) {
+  json materials = json::array();
+  for (const PackageMaterial& material : parts.materials) materials.push_back(materialJson(material));
+  PackageMesh found = parseMesh(std::move(glb), file, std::move(materials));
+  if (targetNamesOf(found) != targetNamesOf(mesh)) {
+    throw InputError(
+        {file, "meshes[0].extras.targetNames", "those of the package's mesh, in their order", "others", kCure});
+  }
+  return found;
+}
+
 PackageMesh readPackageMesh(const Package& package, std::uint64_t memory_bytes) {
   const std::string& name = package.description().mesh_file;
-  const std::string path = (package.directory() / name).string();
-  const InputFile file = package.folder().open(name, "the mesh of the package", "write the package again");
-  // The file, its text as values, and, where it is exported, three copies of its numbers.
-  io::requireMemory(5 * file.size(), memory_bytes, path);
-  return parsePackageMesh(file.read(kMostMeshBytes), path);
+  return parsePackageMesh(readWhole(package, name, memory_bytes), (package.directory() / name).string());
+}
+
+PackageMesh readPackageParts(const Package& package, const PackageMesh& mesh, std::uint64_t memory_bytes) {
+  const PackageParts& parts = *package.description().parts;
+  return parsePackageParts(readWhole(package, parts.file, memory_bytes), (package.directory() / parts.file).string(),
+                           parts, mesh);
+}
+
+json materialJson(const PackageMaterial& material) {
+  json made = {{"name", material.name},
+               {"pbrMetallicRoughness",
+                {{"baseColorFactor", {material.colour[0], material.colour[1], material.colour[2], material.opacity}},
+                 {"metallicFactor", 0.0},
+                 {"roughnessFactor", material.roughness}}}};
+  // Cards and linings are seen from both sides; the far side of what one looks through would be drawn over the near.
+  const bool blended = material.alpha == PackageMaterial::Alpha::kBlend;
+  if (!blended) made["doubleSided"] = true;
+  if (blended) made["alphaMode"] = "BLEND";
+  if (material.alpha == PackageMaterial::Alpha::kMask) made["alphaMode"] = "MASK";
+  return made;
 }
 
 std::string packageMeshFile(const PackageMesh& mesh) { return joinGlb(mesh.document.dump(), mesh.buffer); }

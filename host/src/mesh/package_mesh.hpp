@@ -23,7 +23,7 @@ struct PackageMesh {
   nlohmann::json document;                  ///< glTF: only what the rules know of, all references in range
   std::shared_ptr<const std::string> file;  ///< as it was read
   std::span<const std::byte> buffer;        ///< its one buffer, within the file
-  std::size_t vertices = 0;
+  std::size_t vertices = 0;                 ///< of all primitives
   std::size_t targets = 0;
 };
 
@@ -34,6 +34,17 @@ PackageMesh parsePackageMesh(std::string glb, const std::string& file);
 
 /// Reads and checks the mesh of a package that has one. Throws InputError, where that needs more memory, too.
 PackageMesh readPackageMesh(const Package& package, std::uint64_t memory_bytes);
+
+/// Reads and checks the parts of a package that has some: a mesh of a primitive for each material, whose morph targets
+/// are named as those of `mesh`, the package's. Throws InputError as readPackageMesh().
+PackageMesh readPackageParts(const Package& package, const PackageMesh& mesh, std::uint64_t memory_bytes);
+
+/// The same of a file's bytes.
+PackageMesh parsePackageParts(std::string glb, const std::string& file, const PackageParts& parts,
+                              const PackageMesh& mesh);
+
+/// A material of glTF, without its texture.
+nlohmann::json materialJson(const PackageMaterial& material);
 
 /// The mesh as a binary glTF file of our own making: for readers that trust what they read.
 std::string packageMeshFile(const PackageMesh& mesh);

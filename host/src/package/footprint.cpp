@@ -14,7 +14,7 @@ std::vector<fs::path> filesIn(const fs::path& directory) {
   try {
     std::vector<std::string> files =
         filesOf(parsePackageJson(io::readFile(file, "the description of a package"), file.string()));
-    files.insert(files.end(), {"rig.json", "rig.gltf", "rig.bin", "shapes"});  // of a rig (docs/rig.md)
+    files.insert(files.end(), {"rig.json", "rig.gltf", "rig.bin", "shapes", "parts"});  // of a rig (docs/rig.md)
     return {files.begin(), files.end()};
   } catch (const InputError& error) {
     throw OutputError(directory, error.what(), "choose another --output, or remove the damaged package");
@@ -26,6 +26,12 @@ std::vector<fs::path> filesIn(const fs::path& directory) {
 std::vector<std::string> filesOf(const PackageDescription& description) {
   std::vector<std::string> files = {kDescriptionFile};
   if (!description.mesh_file.empty()) files.push_back(description.mesh_file);
+  if (description.parts) {
+    files.push_back(description.parts->file);
+    for (const PackageMaterial& material : description.parts->materials) {
+      if (!material.texture.empty()) files.push_back(material.texture);
+    }
+  }
   if (description.masks) files.push_back(description.masks->file);
   for (const PackageWeights& set : description.weights) files.insert(files.end(), set.files.begin(), set.files.end());
   for (const PackageMap& map : description.maps) {

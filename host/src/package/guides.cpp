@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
+#include <iterator>
 #include <set>
+#include <utility>
 
 #include "io/quoted.hpp"
 #include "io/safe_names.hpp"
@@ -23,6 +26,32 @@ Document masksJson(const PackageMasks& masks) {
 }
 
 constexpr int kMostMasks = 1 << 16;
+constexpr std::pair<PackageMaterial::Alpha, const char*> kAlphas[] = {{PackageMaterial::Alpha::kOpaque, "opaque"},
+                                                                      {PackageMaterial::Alpha::kMask, "mask"},
+                                                                      {PackageMaterial::Alpha::kBlend, "blend"}};
+
+const char* alphaName(PackageMaterial::Alpha alpha) {
+  return std::ranges::find(kAlphas, alpha, &std::pair<PackageMaterial::Alpha, const char*>::first)->second;
+}
+
+Document partsJson(const PackageParts& parts) {
+  Document materials = Document::array();
+  for (const PackageMaterial& material : parts.materials) materials.push_back(materialJson(material));
+  return {{"file", parts.file}, {"materials", materials}};
+}
+
+PackageParts parseParts(const io::JsonField& field) {
+  PackageParts parts;
+  parts.file = io::fileInPackage(field["file"], ".glb");
+  std::set<std::string> names;
+  for (const io::JsonField& element : field["materials"].elements(1, kMostParts)) {
+    parts.materials.push_back(parseMaterial(element));
+    if (!names.insert(parts.materials.back().name).second) {
+      element["name"].fail("unique names of materials", io::quoted(parts.materials.back().name) + " twice");
+    }
+  }
+  return parts;
+}
 
 PackageMasks parseMasks(const io::JsonField& field) {
   PackageMasks masks;
@@ -79,6 +108,7 @@ std::uint64_t checkMesh(const io::Folder& folder, const std::string& name) {
 
 void addGuides(const PackageDescription& description, Document& document) {
   if (!description.mesh_file.empty()) document["mesh"] = {{"file", description.mesh_file}};
+  if (description.parts) document["parts"] = partsJson(*description.parts);
   if (description.masks) document["masks"] = masksJson(*description.masks);
   if (description.regions.empty()) return;
   Document regions = Document::array();
@@ -90,6 +120,10 @@ void addGuides(const PackageDescription& description, Document& document) {
 
 void parseGuides(const io::JsonField& document, PackageDescription& description) {
   if (document.has("mesh")) description.mesh_file = io::fileInPackage(document["mesh"]["file"], ".glb");
+  if (document.has("parts")) {
+    if (description.mesh_file.empty()) document["parts"].fail("a mesh whose parts these are", "no field mesh");
+    description.parts = parseParts(document["parts"]);
+  }
   if (document.has("masks")) description.masks = parseMasks(document["masks"]);
   if (!document.has("regions")) return;
   if (!description.masks) document["regions"].fail("masks that regions are made of", "no field masks");
@@ -100,9 +134,53 @@ image::ImageShape masksShape(const PackageMasks& masks) {
   return {masks.columns * masks.tile_width, masks.rows * masks.tile_height, 1, image::SampleType::kUint8};
 }
 
+image::ImageShape textureShape(const PackageMaterial& material) {
+  return {material.width, material.height, material.channels, image::SampleType::kUint8};
+}
+
+Document materialJson(const PackageMaterial& material) {
+  Document json = {{"name", material.name},
+                   {"colour", material.colour},
+                   {"opacity", material.opacity},
+                   {"alpha", alphaName(material.alpha)},
+                   {"roughness", material.roughness}};
+  if (material.texture.empty()) return json;
+  json["texture"] = {{"file", material.texture},
+                     {"width", material.width},
+                     {"height", material.height},
+                     {"channels", material.channels}};
+  return json;
+}
+
+PackageMaterial parseMaterial(const io::JsonField& field) {
+  PackageMaterial material;
+  material.name = io::fileSafeName(field["name"]);
+  const std::vector<io::JsonField> colour = field["colour"].elements(3, 3);
+  for (std::size_t c = 0; c < 3; ++c) material.colour[c] = colour[c].number(0, 1);
+  material.opacity = field["opacity"].number(0, 1);
+  const std::string alpha = field["alpha"].text();
+  const auto found = std::ranges::find(kAlphas, alpha, &std::pair<PackageMaterial::Alpha, const char*>::second);
+  if (found == std::end(kAlphas)) field["alpha"].fail(R"("opaque", "mask" or "blend")", field["alpha"].got());
+  material.alpha = found->first;
+  material.roughness = field["roughness"].number(0, 1);
+  if (!field.has("texture")) return material;
+  const io::JsonField texture = field["texture"];
+  material.texture = io::fileInPackage(texture["file"], ".png");
+  material.width = texture["width"].integer(1, kMaxAtlasSide);
+  material.height = texture["height"].integer(1, kMaxAtlasSide);
+  material.channels = texture["channels"].integer(1, 4);
+  return material;
+}
+
 std::uint64_t checkGuides(const PackageDescription& description, const io::Folder& folder) {
   std::uint64_t bytes = 0;
   if (!description.mesh_file.empty()) bytes += checkMesh(folder, description.mesh_file);
+  if (description.parts) {
+    bytes += checkMesh(folder, description.parts->file);
+    for (const PackageMaterial& material : description.parts->materials) {
+      if (!material.texture.empty()) bytes += checkImage(folder, material.texture, textureShape(material));
+    }
+  }
   if (description.masks) bytes += checkImage(folder, description.masks->file, masksShape(*description.masks));
   return bytes;
 }

@@ -106,9 +106,6 @@ ScanFolder openScans(const fs::path& directory, const fs::path& landmarks) {
   }
   if (found.neutral.empty())
     throw InputError({folder.string(), "scans", "neutral.obj or neutral.glb", "none", "name the neutral so"});
-  if (found.expressions.empty()) {
-    throw InputError({folder.string(), "scans", "an expression, NAME.obj, beside the neutral", "none", ""});
-  }
   found.landmark_file = landmarks.empty() ? directory / "landmarks.json" : landmarks;
   found.landmarks = readScanLandmarks(found.landmark_file);
   return found;

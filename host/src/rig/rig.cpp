@@ -14,6 +14,7 @@
 #include "io/safe_names.hpp"
 #include "io/stage_clock.hpp"
 #include "package/footprint.hpp"
+#include "rig/iris.hpp"
 #include "rig/moving_head.hpp"
 #include "rig/rig_json.hpp"
 #include "rig/rig_meshes.hpp"
@@ -73,6 +74,7 @@ RigHeadMotion headMotionOf(const geometry::Similarity& motion, const Eigen::Matr
 }
 
 void requireSaneOptions(const RigOptions& options) {
+  findIris(options.eyes, "--eyes");
   textureSolveOf(options);
   if (options.fit.iterations < 0 || options.fit.iterations > 1000) {
     throw InputError({"--iterations", "", "0 to 1000", fmt::format("{}", options.fit.iterations), ""});
@@ -99,6 +101,8 @@ RigInputs readInputs(const Capture& capture, const fs::path& template_directory,
   requireRigSize(inputs.rig_template.names.size(), capture.expressions.size(), template_directory.string());
   inputs.subject = readSubject(capture, options, progress);
   requireSkin(inputs.rig_template, inputs.subject.neutral, capture.neutral_mesh.string());
+  inputs.rig_template.parts =
+      readTemplateParts(inputs.rig_template.neutral_file, inputs.rig_template.neutral, inputs.subject.neutral);
   const std::vector<std::string>& shapes = inputs.rig_template.names;
   if (!options.guess.empty()) inputs.guess = readGuess(options.guess, capture.expressions, shapes);
   inputs.package_expressions = packageNamesOf(capture.expressions, shapes, capture.directory.string(), progress);
@@ -232,7 +236,7 @@ void reportTextures(const ShapeTextures& textures, const RigOptions& options, Ri
   report.left_out_nothing = textures.chosen.left_out_nothing;
 }
 
-/// shapes/, rig.gltf and mesh.glb.
+/// shapes/, parts/, rig.gltf, mesh.glb and parts.glb.
 void writeMeshes(const RigInputs& inputs, const RigFace& face, const geometry::ExampleRig& rig,
                  const std::string& title, bool package_mesh, const fs::path& directory, Progress& progress) {
   const std::vector<std::string>& shapes = inputs.rig_template.names;
@@ -240,7 +244,10 @@ void writeMeshes(const RigInputs& inputs, const RigFace& face, const geometry::E
   const Eigen::RowVector3d origin = geometry::floatOrigin(face.neutral.positions);
   if (!origin.isZero(0.0)) progress.note(geometry::originNote(origin, "rig.gltf"));
   writeFace(directory, face, shapes, title, geometry::metresPerUnit(inputs.subject.unit), package.maps());
-  if (package_mesh) writePackageMesh(directory, inputs.subject, rig, inputs.package_expressions, shapes, title);
+  if (!package_mesh) return;
+  writePackageMesh(directory, inputs.subject, rig, inputs.package_expressions, shapes, title);
+  writePackageParts(directory, face, inputs.subject.expressions, rig.weights,
+                    geometry::metresPerUnit(inputs.subject.unit));
 }
 
 /// The template's shapes on a neutral that no expression was captured of.
@@ -287,7 +294,7 @@ RigReport rigNeutral(const Capture& capture, const fs::path& template_directory,
   RigReport report;
   report.transfer =
       face.rig.transfer == geometry::ShapeTransfer::kGradients ? "deformation gradients" : "displacements";
-  writeShapePackage(capture, face, textures, options.compress, staged.path(), device, progress, report);
+  writeShapePackage(capture, face, textures, options.compress, options.eyes, staged.path(), device, progress, report);
   fs::remove_all(scratch);
   clock.book("compressing");
   staged.commit();
@@ -336,9 +343,9 @@ RigReport rigCapture(const Capture& capture, const fs::path& template_directory,
   clock.book("textures of shapes");
 
   progress.stage("writing shapes", 0);
-  const RigFace face = assembleFace(inputs.subject, inputs.rig_template, rig);
+  const RigFace face = assembleFace(inputs.subject, inputs.rig_template, rig, options.eyes);
   report.vertices = static_cast<int>(face.neutral.positions.rows());
-  report.parts = face.parts;
+  report.parts = face.pieces;
   writeMeshes(inputs, face, rig, capture.name, options.compress.mesh, staged.path(), progress);
   io::writeTextFile(staged.path() / kRigFile, rigJson(report, inputs.subject.millimetresPerUnit()));
   clock.book("writing shapes");

@@ -8,6 +8,7 @@
 
 #include "facezip/geometry/mesh.hpp"
 #include "facezip/progress.hpp"
+#include "rig/template_parts.hpp"
 
 namespace facezip::rig {
 
@@ -16,6 +17,7 @@ struct RigTemplate {
   geometry::TriangleMesh neutral;
   std::vector<std::string> names;        ///< M, sorted
   std::vector<Eigen::MatrixX3d> shapes;  ///< M positions, as many rows as the neutral has vertices
+  TemplateParts parts;                   ///< beyond a skin: readTemplateParts()
 };
 
 /// Reads neutral.obj (generic_neutral.obj, generic_neutral_mesh.obj) and every other OBJ file of a directory as a shape

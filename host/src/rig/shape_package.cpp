@@ -52,8 +52,8 @@ CompressOptions optionsFor(const std::vector<CaptureMap>& textures, CompressOpti
 }  // namespace
 
 void writeShapePackage(const Capture& neutral, const ShapedFace& face, const std::vector<CaptureMap>& textures,
-                       const CompressOptions& options, const fs::path& directory, const Device& device,
-                       Progress& progress, RigReport& report) {
+                       const CompressOptions& options, const std::string& eyes, const fs::path& directory,
+                       const Device& device, Progress& progress, RigReport& report) {
   const fs::path meshes = directory / ".shapes", compressed = directory / ".compressed";  // names that no map has
   const Capture capture = captureOfShapes(neutral, face, textures, meshes);
   report.compress = compressCapture(capture, compressed, optionsFor(textures, options, progress), device, progress);
@@ -64,11 +64,11 @@ void writeShapePackage(const Capture& neutral, const ShapedFace& face, const std
   fs::remove_all(meshes);
 
   progress.stage("writing shapes", 0);
-  const RigFace whole = assembleFace(face.subject, face.rig_template, face.rig);
+  const RigFace whole = assembleFace(face.subject, face.rig_template, face.rig, eyes);
   report.shapes = face.rig_template.names;
   report.vertices = static_cast<int>(whole.neutral.positions.rows());
   report.skin_vertices = static_cast<int>(face.subject.neutral.positions.rows());
-  report.parts = whole.parts;
+  report.parts = whole.pieces;
   for (std::size_t m = 0; m < report.shapes.size(); ++m) {
     if (face.rig.shapes[m].isZero(0.0)) report.still.push_back(report.shapes[m]);
   }
@@ -76,6 +76,9 @@ void writeShapePackage(const Capture& neutral, const ShapedFace& face, const std
   const Eigen::RowVector3d origin = geometry::floatOrigin(whole.neutral.positions);
   if (!origin.isZero(0.0)) progress.note(geometry::originNote(origin, "rig.gltf"));
   writeFace(directory, whole, report.shapes, neutral.name, geometry::metresPerUnit(face.subject.unit), package.maps());
+  if (options.mesh) {
+    writePackageParts(directory, whole, {}, {}, geometry::metresPerUnit(face.subject.unit));
+  }
   io::writeTextFile(directory / kRigFile, rigJson(report, face.subject.millimetresPerUnit()));
 }
 

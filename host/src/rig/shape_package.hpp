@@ -27,10 +27,11 @@ struct ShapedFace {
 /// rig.gltf and rig.json.
 /// neutral   the subject's capture; of its maps only those of `textures` are packed
 /// textures  maps with an image for each of the M shapes; the neutral's own image says that nothing changes
+/// eyes      as assembleFace() takes it
 /// report    gets what is known of the shapes
 /// Throws as compressCapture() does.
 void writeShapePackage(const Capture& neutral, const ShapedFace& face, const std::vector<CaptureMap>& textures,
-                       const CompressOptions& options, const std::filesystem::path& directory, const Device& device,
-                       Progress& progress, RigReport& report);
+                       const CompressOptions& options, const std::string& eyes, const std::filesystem::path& directory,
+                       const Device& device, Progress& progress, RigReport& report);
 
 }  // namespace facezip::rig

@@ -36,7 +36,7 @@ class Viewer {
     this.textures = await PackageTextures.load(readFile, this.description, renderer,
       (what) => byId('stats').textContent = `loading ${what}`);
     this.masks = await readMasks(readFile, this.description);
-    this.morphs = this.description.mesh ? await this.head.loadMesh(readFile, this.description.mesh.file) : [];
+    this.morphs = this.description.mesh ? await this.head.loadMesh(readFile, this.description) : [];
     this.uniforms = { detail: { value: true }, layer: { value: 0 }, picture: { value: null } };
     this.buildPanel();
     this.resize();
@@ -175,7 +175,7 @@ class Viewer {
     }
     const view = mode === 'masks' || mode === 'regions' ? 'picture' : mode;
     this.head.setMaterial(mode === 'shaded'
-      ? shadedMaterial(this.textures, this.uniforms) : viewMaterial(this.textures, map, view, this.uniforms));
+      ? shadedMaterial(this.textures, this.uniforms) : viewMaterial(this.textures, map, view, this.uniforms), mode === 'shaded');
     const flat = byId('flat').checked;
     const aspect = map.width / map.height;
     if (flat !== this.flat || aspect !== this.aspect) this.head.show(flat, aspect);
@@ -240,6 +240,13 @@ globalThis.facezip = {
   setWeights: (byName) => viewer.setWeights(byName),
   setPreset: (text) => viewer.setGains(fromPreset(viewer.description, text)),
   get preset() { return viewer.preset(); },
+  /** Names of the parts beyond the skin, those that are seen. */
+  get parts() { return (viewer.head.parts ?? []).filter((part) => part.visible).map((part) => part.material.name); },
+  /** How far each of them is posed, by names of expressions. */
+  get partWeights() {
+    return (viewer.head.parts ?? []).map(({ morphTargetDictionary: index, morphTargetInfluences: pose }) =>
+      Object.fromEntries(Object.entries(index ?? {}).map(([name, i]) => [name, pose[i]])));
+  },
   get gpuBytes() { return memory.bytes; },
   /** What is shown is up to date. */
   get settled() { return viewer.changed === false; },

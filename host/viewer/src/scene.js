@@ -4,6 +4,7 @@ import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
 import { memory } from './blend.js';
 import { composeTargets } from './composed.js';
+import { loadParts, setMorphs } from './parts.js';
 
 export class HeadScene {
   constructor(canvas) {
@@ -25,9 +26,9 @@ export class HeadScene {
     this.scene.add(this.sheet);
   }
 
-  /** Loads mesh.glb. Returns the names of its morph targets. */
-  async loadMesh(readFile, file) {
-    const bytes = await readFile(file);
+  /** Loads mesh and parts. Returns the names of the mesh's morph targets. */
+  async loadMesh(readFile, description) {
+    const bytes = await readFile(description.mesh.file);
     const gltf = await new GLTFLoader().parseAsync(bytes.buffer, '');
     gltf.scene.traverse((node) => { if (node.isMesh) this.head = node; });
     composeTargets(this.head);
@@ -39,15 +40,16 @@ export class HeadScene {
     const count = geometry.attributes.position.count;
     const targets = geometry.morphAttributes.position?.length ?? 0;
     memory.bytes += count * 32 + (geometry.index?.count ?? 0) * 4 + count * 32 * targets;  // morphs: RGBA32F, normals too
+    this.parts = await loadParts(readFile, description);
+    for (const part of this.parts) this.scene.add(part);
     return Object.keys(this.head.morphTargetDictionary ?? {});
   }
 
+  /** Weights by names of expressions. */
   setMorphs(names, weights) {
-    if (!this.head?.morphTargetDictionary) return;
-    names.forEach((name, n) => {
-      const index = this.head.morphTargetDictionary[name];
-      if (index !== undefined) this.head.morphTargetInfluences[index] = weights[n];
-    });
+    if (!this.head) return;
+    const byName = new Map(names.map((name, n) => [name, weights[n]]));
+    setMorphs([this.head, ...this.parts], (name) => byName.get(name));
   }
 
   /** Shows the head, or a sheet of the given proportions, and looks at it from the front. */
@@ -56,6 +58,7 @@ export class HeadScene {
     this.sheet.visible = this.flat;
     if (this.head) this.head.visible = !this.flat;
     this.sheet.scale.set(aspect, 1, 1);
+    this.showParts();
     this.frame();
   }
 
@@ -75,11 +78,18 @@ export class HeadScene {
     this.controls.update();
   }
 
-  setMaterial(material) {
+  /** shaded: as a head that one sees, with its eyes and teeth, and not as a look into the package. */
+  setMaterial(material, shaded) {
     this.material?.dispose();
     this.material = material;
     this.sheet.material = material;
+    this.shaded = shaded;
     if (this.head) this.head.material = material;
+    this.showParts();
+  }
+
+  showParts() {
+    for (const part of this.parts ?? []) part.visible = this.shaded && !this.flat;
   }
 
   /** Fits the canvas to what the panel leaves of the window. */

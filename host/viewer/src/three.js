@@ -10,6 +10,7 @@ import { fileReader } from './files.js';
 import { cellGains, fromPreset } from './gains.js';
 import { shadedMaterial } from './materials.js';
 import { readDescription, readMasks } from './package.js';
+import { loadParts, setMorphs } from './parts.js';
 
 export async function loadFace(renderer, base = './') {
   if (!renderer.extensions.has('EXT_color_buffer_float')) throw new Error('facezip needs EXT_color_buffer_float');
@@ -20,6 +21,8 @@ export async function loadFace(renderer, base = './') {
   let object;
   gltf.scene.traverse((node) => { if (node.isMesh) object = node; });
   composeTargets(object);
+  const parts = await loadParts(readFile, description);
+  for (const part of parts) object.add(part);
   object.material = shadedMaterial(textures, { detail: { value: true } });
   let gains = new Float32Array(description.expressions.length).fill(1);
   let weights = new Float32Array(description.expressions.length);
@@ -32,9 +35,7 @@ export async function loadFace(renderer, base = './') {
     /** Weights by name; others are 0. */
     setWeights(byName) {
       weights = Float32Array.from(description.expressions, (name) => byName[name] ?? 0);
-      for (const [name, index] of Object.entries(object.morphTargetDictionary ?? {})) {
-        object.morphTargetInfluences[index] = byName[name] ?? 0;
-      }
+      setMorphs([object, ...parts], (name) => byName[name]);
       blend();
     },
     /** The text of a preset of gains that `facezip view` saved. */

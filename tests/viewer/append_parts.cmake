@@ -1,0 +1,30 @@
+# Gives the template in FOLDER eyes and teeth behind its skin: octahedra, and a sheet that jawOpen takes along.
+function(octahedron x y z text)
+  math(EXPR left "${x} - 12")
+  math(EXPR right "${x} + 12")
+  math(EXPR below "${y} - 12")
+  math(EXPR above "${y} + 12")
+  math(EXPR front "${z} + 12")
+  math(EXPR back "${z} - 12")
+  foreach(point "${right} ${y} ${z}" "${left} ${y} ${z}" "${x} ${above} ${z}" "${x} ${below} ${z}" "${x} ${y} ${front}" "${x} ${y} ${back}")
+    string(REGEX REPLACE "(-?[0-9]+)" "\\1e-3" point "${point}")
+    string(APPEND lines "v ${point}\n")
+  endforeach()
+  # The front is in the middle of the layout, the back at its corners.
+  string(APPEND lines "vt 0.75 0.5\nvt 0.25 0.5\nvt 0.5 0.75\nvt 0.5 0.25\nvt 0.5 0.5\nvt 1 1\nvt 0 1\nvt 0 0\nvt 1 0\n")
+  string(APPEND lines "f -6/-9 -4/-7 -2/-5\nf -4/-7 -5/-8 -2/-5\nf -5/-8 -3/-6 -2/-5\nf -3/-6 -6/-9 -2/-5\n"
+                      "f -4/-7 -6/-9 -1/-4\nf -5/-8 -4/-7 -1/-3\nf -3/-6 -5/-8 -1/-2\nf -6/-9 -3/-6 -1/-1\n")
+  set(${text} "${lines}" PARENT_SCOPE)
+endfunction()
+octahedron(32 43 70 left_eye)
+octahedron(-32 43 70 right_eye)
+file(GLOB files ${FOLDER}/*.obj)
+foreach(file ${files})
+  set(y -0.020)
+  if(file MATCHES "jawOpen")
+    set(y -0.035)
+  endif()
+  file(APPEND ${file} "usemtl eyes\n${left_eye}${right_eye}usemtl teeth\n"
+    "v -0.015 ${y} 0.075\nv 0.015 ${y} 0.075\nv 0.015 -0.010 0.075\nv -0.015 -0.010 0.075\n"
+    "vt 1.1 0.1\nvt 1.9 0.1\nvt 1.9 0.9\nvt 1.1 0.9\nf -4/-4 -3/-3 -2/-2 -1/-1\n")
+endforeach()

@@ -24,8 +24,9 @@
 #include <vector>
 
 #include "facezip/error.hpp"
-#include "facezip/geometry/textured_obj.hpp"
+#include "facezip/geometry/textured_mesh.hpp"
 #include "facezip/input_file.hpp"
+#include "file_beside.hpp"
 
 namespace facezip::geometry {
 namespace {
@@ -318,19 +319,6 @@ TexturedMesh meshOf(const std::filesystem::path& file, const ObjLines& lines, co
   return textured;
 }
 
-/// The file of that name in the folder of `file`: where a path leads elsewhere, its last part. Empty if there is none.
-std::filesystem::path besideFile(const std::filesystem::path& file, std::string name) {
-  namespace fs = std::filesystem;
-  std::replace(name.begin(), name.end(), '\\', '/');
-  std::error_code error;
-  for (const fs::path& candidate : {fs::path(name).lexically_normal(), fs::path(name).filename()}) {
-    if (candidate.empty() || candidate.is_absolute() || *candidate.begin() == "..") continue;
-    const fs::path beside = file.parent_path() / candidate;
-    if (fs::is_regular_file(beside, error)) return beside;
-  }
-  return {};
-}
-
 /// The text of every material library that the mesh names, one after the other.
 std::string readLibraries(const std::filesystem::path& file, std::string_view text) {
   std::string libraries;
@@ -340,7 +328,7 @@ std::string readLibraries(const std::filesystem::path& file, std::string_view te
     if (nextWord(line) != "mtllib") continue;
     line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
     while (!line.empty() && isBlank(line.back())) line.remove_suffix(1);
-    const std::filesystem::path library = besideFile(file, std::string(line));
+    const std::filesystem::path library = fileBeside(file, std::string(line));
     if (!library.empty())
       libraries += plainLines(InputFile(library, "a material library").read(kMostLibraryBytes)) + "\n";
   }
@@ -377,11 +365,16 @@ TexturedMesh readTexturedObj(const std::filesystem::path& file) {
   const tinyobj::ObjReader reader = parse(file, text, readLibraries(file, text));
   TexturedMesh textured = meshOf(file, lines, reader);
   for (const tinyobj::material_t& material : reader.GetMaterials()) {
-    textured.textures.push_back(besideFile(file, material.diffuse_texname));
+    textured.textures.push_back(fileBeside(file, material.diffuse_texname));
   }
   const auto none = static_cast<int>(textured.textures.size());
   for (int& material : textured.materials) material = material < 0 || material >= none ? none : material;
   textured.textures.emplace_back();
+  const std::vector<double>& colours = reader.GetAttrib().colors;  // all vertices have one, or there are none
+  if (colours.size() == static_cast<std::size_t>(textured.mesh.positions.size())) {
+    textured.colours = coordinates<Eigen::MatrixX3d>(file, colours, lines.vertices).cast<float>();
+    if (textured.colours.maxCoeff() > 1.0f) textured.colours /= 255.0f;  // as some write them
+  }
   return textured;
 }
 

@@ -1,5 +1,6 @@
 #include "facezip/registration.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -184,6 +185,50 @@ TEST(Registration, WhatTheMeshFollowsIsNeitherInNormalsNorInHeights) {
   }
   EXPECT_GT(up / count, 0.97);
   EXPECT_LT(off / count, 0.2);
+}
+
+TEST(Registration, ColouredVerticesOfPlyFilesAreATextureToo) {
+  const Registered& made = Registered::once();
+  const test::TemporaryDirectory folder;
+  io::createDirectories(folder / "scans");
+  fs::copy(made.folder / "scans/landmarks.json", folder / "scans/landmarks.json");
+  for (const char* name : {"neutral", "open"}) {
+    const geometry::TriangleMesh scan = geometry::readObj(made.folder / "scans/scans" / (std::string(name) + ".obj"));
+    std::string text = fmt::format(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\n"
+        "property uchar red\nproperty uchar green\nproperty uchar blue\nelement face {}\n"
+        "property list uchar int vertex_indices\nend_header\n",
+        scan.positions.rows(), scan.triangles.rows());
+    for (Eigen::Index v = 0; v < scan.positions.rows(); ++v) {
+      const int skin = static_cast<int>(test::ScanSet::skin(1.0 - scan.uvs(v, 1), scan.uvs(v, 0)));
+      text += fmt::format("{} {} {} {} {} {}\n", scan.positions(v, 0), scan.positions(v, 1), scan.positions(v, 2), skin,
+                          skin / 2, 10);
+    }
+    for (const auto& t : scan.triangles.rowwise()) text += fmt::format("3 {} {} {}\n", t[0], t[1], t[2]);
+    io::writeTextFile(folder / "scans" / (std::string(name) + ".ply"), text);
+  }
+  RegistrationOptions options;
+  options.resolution = kSide;
+  options.unit = "cm";
+  options.last_step = RegistrationStep::kBending;
+  Notes notes;
+  registerScans(folder / "scans", made.folder / "template", folder / "capture", options, test::testDevice(), notes);
+  const image::Image confidence = image::readImage(folder / "capture/confidence/open.png");
+  const image::Image open = image::readImage(folder / "capture/albedo/open.png");
+  ASSERT_EQ(open.shape, (image::ImageShape{kSide, kSide, 3, image::SampleType::kUint8}));
+  double error = 0.0, contrast = 0.0;
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      const auto at = static_cast<std::size_t>(y * kSide + x);
+      if (image::sampleAt(confidence, at) < 0.5f) continue;
+      const double expected = test::ScanSet::skin((x + 0.5) / kSide, 1.0 - (y + 0.5) / kSide);
+      error += std::abs(255.0 * double{image::sampleAt(open, 3 * at)} - expected);
+      contrast += std::abs(128.0 - expected);
+      EXPECT_NEAR(255.0 * double{image::sampleAt(open, 3 * at + 2)}, 10.0, 1.0);
+    }
+  }
+  EXPECT_GT(contrast, 0.0);
+  EXPECT_LT(error, 0.35 * contrast);
 }
 
 TEST(Registration, TheHeadsMotionIsTakenOutAndTold) {

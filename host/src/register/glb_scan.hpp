@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "facezip/geometry/textured_obj.hpp"
+#include "facezip/geometry/textured_mesh.hpp"
 #include "io/scratch_directory.hpp"
 
 namespace facezip::registration {

@@ -7,7 +7,7 @@
 
 #include "facezip/error.hpp"
 #include "facezip/geometry/obj_io.hpp"
-#include "facezip/geometry/textured_obj.hpp"
+#include "facezip/geometry/textured_mesh.hpp"
 #include "image/input_extensions.hpp"
 #include "io/safe_names.hpp"
 #include "register/glb_scan.hpp"
@@ -22,17 +22,25 @@ fs::path meshFolder(const fs::path& directory) {
   std::error_code error;
   if (!fs::is_directory(directory, error)) {
     throw InputError({directory.string(), "scans",
-                      "a directory with neutral.obj (or .glb) and a mesh for each expression",
+                      "a directory with neutral.obj (or .ply, .glb) and a mesh for each expression",
                       fs::exists(directory, error) ? "a file" : "no such directory", ""});
   }
   return fs::is_directory(directory / "scans", error) ? directory / "scans" : directory;
 }
 
-bool isGlb(const fs::path& file) {
+std::string extensionOf(const fs::path& file) {
   std::string extension = file.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".glb";
+  return extension;
+}
+
+bool isGlb(const fs::path& file) { return extensionOf(file) == ".glb"; }
+bool isPly(const fs::path& file) { return extensionOf(file) == ".ply"; }
+bool isHidden(const fs::path& file) { return file.filename().string().front() == '.'; }
+
+geometry::TexturedMesh readTextured(const fs::path& file) {
+  return isPly(file) ? geometry::readTexturedPly(file) : geometry::readTexturedObj(file);
 }
 
 /// Meshes of the folder by name.
@@ -41,7 +49,8 @@ std::vector<fs::path> scansOf(const fs::path& folder) {
   std::error_code error;
   for (fs::directory_iterator entry(folder, error); !error && entry != fs::directory_iterator();
        entry.increment(error)) {
-    if (isGlb(entry->path())) files.push_back(entry->path());
+    const fs::path& file = entry->path();
+    if (!isHidden(file) && (isGlb(file) || isPly(file))) files.push_back(file);
   }
   std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) { return a.stem() < b.stem(); });
   for (std::size_t i = 1; i < files.size(); ++i) {
@@ -65,16 +74,25 @@ fs::path imageBeside(const fs::path& mesh) {
 
 void requireUvs(const Scan& scan) {
   if (scan.mesh.uv_triangles.rows() > 0) return;
-  throw InputError({scan.file.string(), "", "texture coordinates", "none", "export the scan with its UVs"});
+  throw InputError({scan.file.string(), "", "texture coordinates, or colours of vertices", "neither",
+                    "export the scan with its UVs"});
 }
 
-/// Materials that triangles have get a texture each; the others none.
-void requireTextures(Scan& scan) {
+/// Materials that triangles have get a texture each; the others none. Without any, vertices may have colours.
+/// colours  of the vertices before cleaning, whose triangles are `triangles`; kept: rows of these
+void requireTextures(Scan& scan, Eigen::MatrixX3f colours, const Eigen::MatrixX3i& triangles,
+                     const std::vector<int>& kept) {
   std::vector<bool> used(scan.textures.size(), false);
   for (const int material : scan.materials) used[static_cast<std::size_t>(material)] = true;
   const bool none =
       std::all_of(scan.textures.begin(), scan.textures.end(), [](const fs::path& f) { return f.empty(); });
   const fs::path beside = none ? imageBeside(scan.file) : fs::path();
+  if (none && colours.rows() > 0 && (beside.empty() || scan.mesh.uv_triangles.rows() == 0)) {
+    scan.colours = std::move(colours);
+    scan.colour_triangles = triangles(kept, Eigen::all);
+    return;
+  }
+  requireUvs(scan);
   for (std::size_t m = 0; m < scan.textures.size(); ++m) {
     if (!used[m]) {
       scan.textures[m].clear();
@@ -83,7 +101,8 @@ void requireTextures(Scan& scan) {
     }
     if (!used[m] || !scan.textures[m].empty()) continue;
     throw InputError({scan.file.string(), "",
-                      "a texture: of its material (map_Kd, baseColorTexture), or an image of the scan's name beside it",
+                      "a texture: of its material (map_Kd, TextureFile, baseColorTexture), or an image of the scan's "
+                      "name beside it; or colours of vertices",
                       none ? "none" : "triangles of a material without one", ""});
   }
 }
@@ -105,7 +124,8 @@ ScanFolder openScans(const fs::path& directory, const fs::path& landmarks) {
     found.expressions.push_back(file);
   }
   if (found.neutral.empty())
-    throw InputError({folder.string(), "scans", "neutral.obj or neutral.glb", "none", "name the neutral so"});
+    throw InputError(
+        {folder.string(), "scans", "neutral.obj, neutral.ply or neutral.glb", "none", "name the neutral so"});
   if (found.expressions.empty()) {
     throw InputError({folder.string(), "scans", "an expression, NAME.obj, beside the neutral", "none", ""});
   }
@@ -115,19 +135,19 @@ ScanFolder openScans(const fs::path& directory, const fs::path& landmarks) {
 }
 
 geometry::TriangleMesh readScanMesh(const fs::path& file) {
-  return isGlb(file) ? readGlbScan(file).textured.mesh : geometry::readObj(file);
+  return isGlb(file) ? readGlbScan(file).textured.mesh : readTextured(file).mesh;
 }
 
 Scan readScan(const fs::path& file) {
   GlbScan glb;
   if (isGlb(file)) glb = readGlbScan(file);
-  geometry::TexturedMesh read = isGlb(file) ? std::move(glb.textured) : geometry::readTexturedObj(file);
+  geometry::TexturedMesh read = isGlb(file) ? std::move(glb.textured) : readTextured(file);
   Scan scan;
   scan.pictures = std::move(glb.pictures);
   scan.name = file.stem().string();
   scan.file = file;
+  const Eigen::MatrixX3i triangles = read.mesh.triangles;
   scan.mesh = std::move(read.mesh);
-  requireUvs(scan);
   std::vector<int> kept;
   try {
     scan.cleaning = geometry::cleanScan(scan.mesh, &kept);
@@ -136,8 +156,14 @@ Scan readScan(const fs::path& file) {
   }
   for (const int triangle : kept) scan.materials.push_back(read.materials[static_cast<std::size_t>(triangle)]);
   scan.textures = std::move(read.textures);
-  requireTextures(scan);
+  requireTextures(scan, std::move(read.colours), triangles, kept);
   return scan;
+}
+
+void turnAbout(Scan& scan) {
+  scan.mesh.triangles.col(1).swap(scan.mesh.triangles.col(2));
+  if (scan.mesh.uv_triangles.rows() > 0) scan.mesh.uv_triangles.col(1).swap(scan.mesh.uv_triangles.col(2));
+  if (scan.isPainted()) scan.colour_triangles.col(1).swap(scan.colour_triangles.col(2));
 }
 
 }  // namespace facezip::registration

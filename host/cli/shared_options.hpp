@@ -32,6 +32,7 @@ std::vector<std::string> mapNames(const Package& package);
 struct CompressArguments {
   std::string method = "refined";
   std::string permutation_solver = "best";
+  std::string weight_sets = "auto";
   std::string texture_format = "png";
   std::string difference_format;
   std::string mask_radius = "3cm";

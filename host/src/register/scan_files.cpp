@@ -11,6 +11,7 @@
 #include "image/input_extensions.hpp"
 #include "io/safe_names.hpp"
 #include "register/glb_scan.hpp"
+#include "scene/fbx_scene.hpp"
 
 namespace facezip::registration {
 namespace fs = std::filesystem;
@@ -22,7 +23,7 @@ fs::path meshFolder(const fs::path& directory) {
   std::error_code error;
   if (!fs::is_directory(directory, error)) {
     throw InputError({directory.string(), "scans",
-                      "a directory with neutral.obj (or .ply, .glb) and a mesh for each expression",
+                      "a directory with neutral.obj (or .ply, .glb, .fbx) and a mesh for each expression",
                       fs::exists(directory, error) ? "a file" : "no such directory", ""});
   }
   return fs::is_directory(directory / "scans", error) ? directory / "scans" : directory;
@@ -37,9 +38,19 @@ std::string extensionOf(const fs::path& file) {
 
 bool isGlb(const fs::path& file) { return extensionOf(file) == ".glb"; }
 bool isPly(const fs::path& file) { return extensionOf(file) == ".ply"; }
+bool isFbx(const fs::path& file) { return extensionOf(file) == ".fbx"; }
 bool isHidden(const fs::path& file) { return file.filename().string().front() == '.'; }
 
+/// Its materials name textures anywhere: the image beside the scan is its texture.
+geometry::TexturedMesh readFbxScan(const fs::path& file) {
+  geometry::TexturedMesh scan = joinedMeshes(scene::readFbx(file), file);
+  std::ranges::fill(scan.materials, 0);
+  scan.textures.resize(1);
+  return scan;
+}
+
 geometry::TexturedMesh readTextured(const fs::path& file) {
+  if (isFbx(file)) return readFbxScan(file);
   return isPly(file) ? geometry::readTexturedPly(file) : geometry::readTexturedObj(file);
 }
 
@@ -50,7 +61,7 @@ std::vector<fs::path> scansOf(const fs::path& folder) {
   for (fs::directory_iterator entry(folder, error); !error && entry != fs::directory_iterator();
        entry.increment(error)) {
     const fs::path& file = entry->path();
-    if (!isHidden(file) && (isGlb(file) || isPly(file))) files.push_back(file);
+    if (!isHidden(file) && (isGlb(file) || isPly(file) || isFbx(file))) files.push_back(file);
   }
   std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) { return a.stem() < b.stem(); });
   for (std::size_t i = 1; i < files.size(); ++i) {
@@ -109,7 +120,7 @@ void requireTextures(Scan& scan, Eigen::MatrixX3f colours, const Eigen::MatrixX3
 
 }  // namespace
 
-ScanFolder openScans(const fs::path& directory, const fs::path& landmarks) {
+ScanFolder findScans(const fs::path& directory) {
   ScanFolder found;
   const fs::path folder = meshFolder(directory);
   for (const fs::path& file : scansOf(folder)) {
@@ -124,11 +135,15 @@ ScanFolder openScans(const fs::path& directory, const fs::path& landmarks) {
     found.expressions.push_back(file);
   }
   if (found.neutral.empty())
-    throw InputError(
-        {folder.string(), "scans", "neutral.obj, neutral.ply or neutral.glb", "none", "name the neutral so"});
+    throw InputError({folder.string(), "scans", "neutral.obj (or .ply, .glb, .fbx)", "none", "name the neutral so"});
   if (found.expressions.empty()) {
     throw InputError({folder.string(), "scans", "an expression, NAME.obj, beside the neutral", "none", ""});
   }
+  return found;
+}
+
+ScanFolder openScans(const fs::path& directory, const fs::path& landmarks) {
+  ScanFolder found = findScans(directory);
   found.landmark_file = landmarks.empty() ? directory / "landmarks.json" : landmarks;
   found.landmarks = readScanLandmarks(found.landmark_file);
   return found;

@@ -21,10 +21,13 @@ struct ScanFolder {
   ScanLandmarks landmarks;
 };
 
-/// Finds NAME.obj, NAME.ply and NAME.glb in DIR/scans, or in DIR itself, and reads DIR/landmarks.json, or `landmarks`
-/// where that is not empty. Throws InputError: no directory, no neutral, no expression, names that a capture cannot
-/// hold, no landmarks.
+/// Finds NAME.obj, NAME.ply, NAME.glb and NAME.fbx in DIR/scans, or in DIR itself, and reads DIR/landmarks.json, or
+/// `landmarks` where that is not empty. Throws InputError: no directory, no neutral, no expression, names that a
+/// capture cannot hold, no landmarks.
 ScanFolder openScans(const std::filesystem::path& directory, const std::filesystem::path& landmarks);
+
+/// The same without landmarks.
+ScanFolder findScans(const std::filesystem::path& directory);
 
 /// A scan, cleaned.
 struct Scan {
@@ -44,7 +47,7 @@ struct Scan {
 /// The mesh alone, as it stands in the file. Throws InputError.
 geometry::TriangleMesh readScanMesh(const std::filesystem::path& file);
 
-/// Reads a scan, OBJ, PLY or binary glTF, with the textures of its materials; where they have none, NAME.png (or
+/// Reads a scan, OBJ, PLY, binary glTF or FBX, with the textures of its materials; where they have none, NAME.png (or
 /// another image) beside it, else the colours of its vertices. Throws InputError: a material without a texture that
 /// triangles have, textures without UVs, nothing but crumbs.
 Scan readScan(const std::filesystem::path& file);

@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numeric>
+
 #include "facezip/capture.hpp"
 #include "facezip/error.hpp"
 #include "facezip/geometry/closest_surface.hpp"
@@ -11,6 +14,7 @@
 #include "facezip/geometry/topology.hpp"
 #include "facezip/report.hpp"
 #include "register/hole_filling.hpp"
+#include "register/registration_picture.hpp"
 #include "scan_set.hpp"
 #include "temporary_directory.hpp"
 #include "test_device.hpp"
@@ -245,6 +249,55 @@ TEST(Registration, ReportsAsJson) {
   EXPECT_GT(report["scans"][1]["head_motion"]["degrees"].get<double>(), 1.0);
   EXPECT_GE(report["scans"][1]["flow_texels"]["rounds"].get<int>(), 1);
   EXPECT_GE(report["flow_side"].get<int>(), 256);
+}
+
+TEST(Registration, EachScanHasItsPicture) {
+  const Registered& made = Registered::once();
+  for (const char* name : {"neutral.png", "open.png"}) {
+    const image::Image picture = image::readImage(made.folder / "capture/registration" / name);
+    constexpr int kPicture = registration::kPictureSide;
+    ASSERT_EQ(picture.shape, (image::ImageShape{3 * kPicture, kPicture, 3, image::SampleType::kUint8}));
+    const auto red = [&](int x, int y) {
+      return image::sampleAt(picture, 3 * static_cast<std::size_t>(y * 3 * kPicture + x));
+    };
+    int near = 0;
+    for (int y = kPicture / 3; y < 2 * kPicture / 3; ++y) {
+      for (int x = kPicture / 3; x < 2 * kPicture / 3; ++x) near += red(kPicture + x, y) < 0.35f ? 1 : 0;
+    }
+    EXPECT_GT(near, kPicture * kPicture / 12) << "the mesh lies on its scan";
+  }
+}
+
+TEST(RegistrationPicture, ShowsEdgesDistancesAndTexture) {
+  const geometry::TriangleMesh mesh = test::gridMesh(3, 0.0);
+  std::vector<int> region(static_cast<std::size_t>(mesh.triangles.rows()));
+  std::iota(region.begin(), region.end(), 0);
+  registration::BakedTexture texture;
+  texture.side = 2;
+  texture.channels = 3;
+  for (const float grey : {0.1f, 0.2f, 0.3f, 0.4f}) texture.samples.insert(texture.samples.end(), 3, grey);
+  std::vector<float> distances(9, 0.0f);
+  distances[8] = 1.0f;           // the upper right corner
+  distances[0] = std::nanf("");  // the lower left one
+  const image::Image picture = registration::pictureOf(registration::frontOf(mesh, mesh.positions, region), mesh,
+                                                       mesh.positions, distances, texture);
+  constexpr int kPicture = registration::kPictureSide;
+  // Places of the patch, which fills the picture's height: 0.25 high, 0.2 wide.
+  const auto at = [&](int column, double s, double t) {
+    const int x = static_cast<int>(kPicture * (column + 0.5 + 0.92 * 0.8 * (s - 0.5)));
+    const int y = static_cast<int>(kPicture * (0.5 - 0.92 * (t - 0.5)));
+    return 255.0f * image::sampleAt(picture, 3 * static_cast<std::size_t>(y * 3 * kPicture + x));
+  };
+  EXPECT_NEAR(at(2, 0.25, 0.75), 255 * 0.1, 1.0);
+  EXPECT_NEAR(at(2, 0.75, 0.75), 255 * 0.2, 1.0);
+  EXPECT_NEAR(at(2, 0.25, 0.25), 255 * 0.3, 1.0);
+  EXPECT_NEAR(at(2, 0.75, 0.25), 255 * 0.4, 1.0);
+  EXPECT_GT(at(1, 0.98, 0.98), 230.0f) << "a millimetre";
+  EXPECT_LT(at(1, 0.25, 0.8), 5.0f) << "on the scan";
+  EXPECT_NEAR(at(1, 0.05, 0.02), at(1, 0.02, 0.05), 12.0f);
+  EXPECT_GT(at(1, 0.05, 0.02), 60.0f) << "nothing shown: grey";
+  EXPECT_LT(at(0, 0.5, 0.8), 0.8f * at(0, 0.4, 0.8)) << "an edge beside a face";
+  EXPECT_NEAR(at(0, -0.05, 0.5), 255 * 0.2, 1.0) << "beside the mesh";
 }
 
 TEST(HoleFilling, KeepsWhatIsKnownAndGoesOnSmoothly) {

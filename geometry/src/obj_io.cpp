@@ -26,8 +26,9 @@
 
 #include "facezip/error.hpp"
 #include "facezip/geometry/named_obj.hpp"
-#include "facezip/geometry/textured_obj.hpp"
+#include "facezip/geometry/textured_mesh.hpp"
 #include "facezip/input_file.hpp"
+#include "file_beside.hpp"
 
 namespace facezip::geometry {
 namespace {
@@ -336,19 +337,6 @@ TexturedMesh meshOf(const std::filesystem::path& file, const ObjLines& lines, co
   return textured;
 }
 
-/// The file of that name in the folder of `file`: where a path leads elsewhere, its last part. Empty if there is none.
-std::filesystem::path besideFile(const std::filesystem::path& file, std::string name) {
-  namespace fs = std::filesystem;
-  std::replace(name.begin(), name.end(), '\\', '/');
-  std::error_code error;
-  for (const fs::path& candidate : {fs::path(name).lexically_normal(), fs::path(name).filename()}) {
-    if (candidate.empty() || candidate.is_absolute() || *candidate.begin() == "..") continue;
-    const fs::path beside = file.parent_path() / candidate;
-    if (fs::is_regular_file(beside, error)) return beside;
-  }
-  return {};
-}
-
 /// The text of every material library that the mesh names, one after the other.
 std::string readLibraries(const std::filesystem::path& file, std::string_view text) {
   std::string libraries;
@@ -356,7 +344,7 @@ std::string readLibraries(const std::filesystem::path& file, std::string_view te
     std::string_view line = text.substr(0, text.find('\n'));
     text.remove_prefix(std::min(text.size(), line.size() + 1));
     if (nextWord(line) != "mtllib") continue;
-    const std::filesystem::path library = besideFile(file, trimmed(line));
+    const std::filesystem::path library = fileBeside(file, std::string(trimmed(line)));
     if (!library.empty())
       libraries += plainLines(InputFile(library, "a material library").read(kMostLibraryBytes)) + "\n";
   }
@@ -378,7 +366,7 @@ std::optional<ObjMaterial> materialOf(const std::filesystem::path& file, const t
   const auto share = [](double value) { return std::isfinite(value) ? std::clamp(value, 0.0, 1.0) : 1.0; };
   for (std::size_t c = 0; c < 3; ++c) material.colour[c] = share(found->diffuse[c]);
   material.opacity = share(found->dissolve);
-  material.texture = besideFile(file, found->diffuse_texname);
+  material.texture = fileBeside(file, found->diffuse_texname);
   return material;
 }
 
@@ -412,11 +400,16 @@ TexturedMesh readTexturedObj(const std::filesystem::path& file) {
   const tinyobj::ObjReader reader = parse(file, text, readLibraries(file, text));
   TexturedMesh textured = meshOf(file, lines, reader);
   for (const tinyobj::material_t& material : reader.GetMaterials()) {
-    textured.textures.push_back(besideFile(file, material.diffuse_texname));
+    textured.textures.push_back(fileBeside(file, material.diffuse_texname));
   }
   const auto none = static_cast<int>(textured.textures.size());
   for (int& material : textured.materials) material = material < 0 || material >= none ? none : material;
   textured.textures.emplace_back();
+  const std::vector<double>& colours = reader.GetAttrib().colors;  // all vertices have one, or there are none
+  if (colours.size() == static_cast<std::size_t>(textured.mesh.positions.size())) {
+    textured.colours = coordinates<Eigen::MatrixX3d>(file, colours, lines.vertices).cast<float>();
+    if (textured.colours.maxCoeff() > 1.0f) textured.colours /= 255.0f;  // as some write them
+  }
   return textured;
 }
 

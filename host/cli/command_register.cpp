@@ -26,9 +26,9 @@ void addRegisterCommand(CLI::App& app, const CommonOptions& common) {
   CLI::App* command =
       app.add_subcommand("register", "Makes a capture of raw scans: a template bent onto each, textures in its layout");
   command
-      ->add_option(
-          "scans", arguments->scans,
-          "Directory of scans: neutral.obj, an OBJ (or GLB) file for each expression, textures, landmarks.json")
+      ->add_option("scans", arguments->scans,
+                   "Directory of scans: a mesh called neutral and one for each expression (.obj, .ply, .glb, .fbx), "
+                   "textures, landmarks.json")
       ->required()
       ->type_name("SCANS");
   command

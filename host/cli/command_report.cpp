@@ -21,6 +21,7 @@ struct Arguments {
   std::string output;
   std::string map;
   std::string compress_report;
+  std::string registration_report;
   std::vector<int> mask_sweep;
   std::string device = "auto";
   std::string memory = "2GiB";
@@ -44,22 +45,27 @@ void report(const Arguments& arguments, Progress& progress) {
   }
   std::string compressed;
   if (!arguments.compress_report.empty()) compressed = readCompressReport(arguments.compress_report);
+  std::string registered;
+  if (!arguments.registration_report.empty()) registered = readRegistrationReport(arguments.registration_report);
   EvaluateOptions options;
   options.blends = 0;
   options.mask_sweep = arguments.mask_sweep;
   options.memory_bytes = parseBytes("--memory", arguments.memory);
   const Package package = Package::open(arguments.package);
   const Capture capture = openCapture(arguments.capture, mapNames(package));
-  requireReportPlace(
-      arguments.output,
-      inputsOf(capture).add(inputsOf(package)).addFile(arguments.compress_report, "the report that is read"),
-      "--output");
+  requireReportPlace(arguments.output,
+                     inputsOf(capture)
+                         .add(inputsOf(package))
+                         .addFile(arguments.compress_report, "the report that is read")
+                         .addFile(arguments.registration_report, "the report that is read"),
+                     "--output");
   const std::size_t pictures = package.expressions().size() * (arguments.map.empty() ? package.maps().size() : 1);
   options.pictures =
       PictureOptions{.map = arguments.map, .all_maps = true, .paper_and_pca = false, .side = pictureSide(pictures)};
   const Device device = openDevice(arguments.device, &progress);
   const Evaluation evaluation = evaluatePackage(capture, package, options, device, progress);
-  writeHtmlReport(arguments.output, package, evaluation, {device.info().name, compressed}, &progress);
+  writeHtmlReport(arguments.output, package, evaluation,
+                  {device.info().name, compressed, registered, capture.directory}, &progress);
   say("Look at {}\n", arguments.output);
 }
 
@@ -80,6 +86,10 @@ void addReportCommand(CLI::App& app, const CommonOptions& common) {
       ->delimiter(',')
       ->type_name("K,...");
   command->add_option("--compress-report", arguments->compress_report, "What `facezip compress --report` wrote")
+      ->type_name("FILE.json");
+  command
+      ->add_option("--registration-report", arguments->registration_report,
+                   "What `facezip register --report` wrote of the capture: shown with its pictures")
       ->type_name("FILE.json");
   addDeviceOption(*command, arguments->device);
   addMemoryOption(*command, arguments->memory);

@@ -20,6 +20,7 @@ void addReportCommand(CLI::App& app, const CommonOptions& common);
 void addViewCommand(CLI::App& app, const CommonOptions& common);
 void addAlignCommand(CLI::App& app, const CommonOptions& common);
 void addRegisterCommand(CLI::App& app, const CommonOptions& common);
+void addLandmarksCommand(CLI::App& app, const CommonOptions& common);
 void addRigCommand(CLI::App& app, const CommonOptions& common);
 void addTrainCommand(CLI::App& app, const CommonOptions& common);
 void addGenerateCommand(CLI::App& app, const CommonOptions& common);

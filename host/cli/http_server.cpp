@@ -181,8 +181,12 @@ struct HttpServer::State {
     const bool too_long = error == http::error::header_limit || error == http::error::buffer_overflow;
     // There is no use for a body: it is not read, and the connection ends, since where it does is not known.
     const bool has_body = !error && (parser.chunked() || parser.content_length().value_or(0) > 0);
+    const std::size_t most = has_body ? site.bodyLimit(plain(parser.get())) : 0;
+    if (most > 0 && parser.content_length().value_or(most + 1) <= most) {
+      co_return co_await takeOne(connection, buffer, std::move(parser), most, site);
+    }
     HttpAnswer answer = error ? HttpAnswer{too_long ? 431 : 400, {}} : site.answer(plain(parser.get()));
-    if (has_body && answer.status == 200) answer = {413, {}};
+    if (has_body && (answer.status == 200 || most > 0)) answer = {413, {}};
     http::response<FileBody> message = response(answer);
     message.version(parser.get().version() == 10 ? 10 : 11);
     message.keep_alive(!error && !has_body && parser.get().keep_alive());
@@ -191,6 +195,22 @@ struct HttpServer::State {
     stream.socket().shutdown(tcp::socket::shutdown_send, error);
     if (has_body || error) co_await drop(stream);
     co_return false;
+  }
+
+  /// Reads the body of a request that the site takes, of a length that was said, and answers it.
+  asio::awaitable<bool> takeOne(Connections::iterator connection, beast::flat_buffer& buffer,
+                                http::request_parser<http::empty_body>&& header, std::size_t most,
+                                const HttpSite& site) {
+    http::request_parser<http::string_body> parser(std::move(header));
+    parser.body_limit(most);
+    co_await http::async_read(connection->stream, buffer, parser, asio::use_awaitable);
+    http::response<FileBody> message = response(site.take(parser.get().body()));
+    message.version(parser.get().version() == 10 ? 10 : 11);
+    message.keep_alive(parser.get().keep_alive());
+    co_await send(connection, message, false);
+    error_code ignored;
+    if (!message.keep_alive()) connection->stream.socket().shutdown(tcp::socket::shutdown_send, ignored);
+    co_return message.keep_alive();
   }
 
   /// Takes some of what the client still sends: closing at once would take the answer from under its eyes.

@@ -1,6 +1,6 @@
 // http_server.hpp - a small web server for this machine alone, by Boost.Beast. Nobody can make it wait, or fill its
-// memory: one thread serves every connection, requests have no bodies and short headers, and all takes its time at
-// most.
+// memory: one thread serves every connection, requests have short headers and no bodies but the one that the site
+// takes, and all takes its time at most.
 #pragma once
 
 #include <chrono>

@@ -41,7 +41,8 @@ std::optional<std::string> pathOf(std::string_view target) {
   return path;
 }
 
-HttpSite::HttpSite(std::map<std::string, HttpFile> files, int port) : files_(std::move(files)) {
+HttpSite::HttpSite(std::map<std::string, HttpFile> files, int port, std::optional<HttpTaker> taker)
+    : files_(std::move(files)), taker_(std::move(taker)) {
   for (const std::string host : {"127.0.0.1", "localhost"}) {
     hosts_.push_back(host + ":" + std::to_string(port));
     if (port == 80) hosts_.push_back(host);  // browsers leave that out
@@ -72,6 +73,18 @@ HttpAnswer HttpSite::answer(const HttpRequest& request) const {
   const auto file = files_.find(*path);
   if (file == files_.end()) return {404, {}};
   return {200, file->second};
+}
+
+std::size_t HttpSite::bodyLimit(const HttpRequest& request) const {
+  const std::optional<std::string> path = pathOf(request.target);
+  const bool taken = taker_ && path == taker_->path && request.method == "PUT" && isOurs(request, *path) &&
+                     !valuesOf(request, "Origin").empty();
+  return taken ? taker_->most_bytes : 0;
+}
+
+HttpAnswer HttpSite::take(const std::string& body) const {
+  const auto said = std::make_shared<const std::string>(taker_->take(body));
+  return {200, {"application/json", *said, nullptr, said}};
 }
 
 }  // namespace facezip::cli

@@ -105,6 +105,7 @@ int main(int argc, char** argv) {
   addViewCommand(app, common);
   addAlignCommand(app, common);
   addRegisterCommand(app, common);
+  addLandmarksCommand(app, common);
   addRigCommand(app, common);
   addTrainCommand(app, common);
   addGenerateCommand(app, common);

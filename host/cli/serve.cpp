@@ -1,11 +1,13 @@
 #include "serve.hpp"
 
 #include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "facezip/check.hpp"
+#include "facezip/error.hpp"
 #include "facezip/view.hpp"
 #include "http_server.hpp"
 
@@ -33,6 +35,28 @@ void serveViewer(const Package& package, int port, const std::function<void(int 
   for (const OpenPackageFile& file : opened) files["/package/" + file.name] = {typeOf(file.name), "", &file.file};
   HttpServer server(port);
   const HttpSite site(std::move(files), server.port());
+  started(server.port());
+  server.run(site, progress);
+}
+
+void serveLandmarks(const LandmarkSession& session, int port, const std::function<void(int port)>& started,
+                    Progress& progress) {
+  std::map<std::string, HttpFile> files;
+  for (const auto& [name, text] : landmarksPage()) files["/" + std::string(name)] = {typeOf(name), text, nullptr};
+  files["/"] = files.at("/landmarks.html");
+  for (const LandmarkSession::File& file : session.files()) {
+    files["/scene/" + file.name] = {typeOf(file.name), "", &file.file};
+  }
+  const auto take = [&session](const std::string& body) -> std::string {
+    try {
+      session.save(body);
+      return R"({"saved": true})";
+    } catch (const Error& error) {
+      return nlohmann::json{{"error", error.what()}}.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+    }
+  };
+  HttpServer server(port);
+  const HttpSite site(std::move(files), server.port(), HttpTaker{"/landmarks", LandmarkSession::kMostBytes, take});
   started(server.port());
   server.run(site, progress);
 }

@@ -3,6 +3,7 @@
 
 #include <functional>
 
+#include "facezip/landmarks.hpp"
 #include "facezip/package.hpp"
 #include "facezip/progress.hpp"
 
@@ -14,5 +15,9 @@ namespace facezip::cli {
 /// started  called with the port, once connections are accepted
 /// Throws InputError when the port cannot be had.
 void serveViewer(const Package& package, int port, const std::function<void(int port)>& started, Progress& progress);
+
+/// Serves a page to place the landmarks of `session`, which it may save; otherwise as above.
+void serveLandmarks(const LandmarkSession& session, int port, const std::function<void(int port)>& started,
+                    Progress& progress);
 
 }  // namespace facezip::cli

@@ -19,6 +19,7 @@ find_package(CLI11 REQUIRED)
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(fmt REQUIRED)
 find_package(TinyGLTF REQUIRED)
+find_package(assimp 5.2 REQUIRED)
 find_package(astcenc 4.2 REQUIRED)
 find_package(Boost 1.74 REQUIRED)  # Beast: headers alone
 find_program(FACEZIP_NODE node REQUIRED)

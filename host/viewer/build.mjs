@@ -18,6 +18,14 @@ await build({
   minify: true,
   format: 'iife',  // a classic script works from file: too
 });
+// The page of `facezip landmarks`.
+await build({
+  ...shared,
+  entryPoints: ['src/landmarks.js'],
+  outfile: `${output}/landmarks.js`,
+  minify: true,
+  format: 'iife',
+});
 // What `facezip export --target three` writes: the page it goes into brings three.js.
 await build({
   ...shared,
@@ -26,4 +34,4 @@ await build({
   format: 'esm',
   external: ['three', 'three/*'],
 });
-for (const file of ['index.html', 'viewer.css']) copyFileSync(`src/${file}`, `${output}/${file}`);
+for (const file of ['index.html', 'viewer.css', 'landmarks.html', 'landmarks.css']) copyFileSync(`src/${file}`, `${output}/${file}`);

@@ -13,9 +13,9 @@
 #include "exit_codes.hpp"
 #include "file_contents.hpp"
 #include "io/staged_directory.hpp"
-#include "mesh/glb.hpp"
 #include "package/package_writer.hpp"
 #include "run_command.hpp"
+#include "scene/glb.hpp"
 #include "small_capture.hpp"
 #include "temporary_directory.hpp"
 
@@ -75,10 +75,10 @@ class HostilePackage : public testing::Test {
   template <typename Change>
   void changeMesh(const Change& change) const {
     const std::string file = contentsOf(package() / "mesh.glb");
-    const mesh::GlbParts parts = mesh::splitGlb(std::as_bytes(std::span(file)), "mesh.glb");
+    const scene::GlbParts parts = scene::splitGlb(std::as_bytes(std::span(file)), "mesh.glb");
     json document = json::parse(parts.json);
     change(document);
-    io::writeTextFile(package() / "mesh.glb", mesh::joinGlb(document.dump(), parts.binary));
+    io::writeTextFile(package() / "mesh.glb", scene::joinGlb(document.dump(), parts.binary));
   }
 
   const test::TemporaryDirectory folder_;
@@ -127,7 +127,7 @@ TEST_F(HostilePackage, MeshesAreCheckedWhole) {
   expectRefused("buffers", thoseOf(commands(), kOfMeshes));
   std::string deep;
   for (int i = 0; i < 200000; ++i) deep += "[";
-  io::writeTextFile(package() / "mesh.glb", mesh::joinGlb(deep, {}));
+  io::writeTextFile(package() / "mesh.glb", scene::joinGlb(deep, {}));
   expectRefused("nested levels", thoseOf(commands(), kOfMeshes));
   // The server of the page checks it, too, before it serves.
   EXPECT_EQ(runFacezip("view " + quoted(package()) + " --port 0", "timeout 20").exit_code, cli::kExitInput);

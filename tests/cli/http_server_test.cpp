@@ -111,6 +111,41 @@ class HttpServer : public testing::Test {
   const std::string large_ = std::string(300000, 'x') + "end";
 };
 
+TEST_F(HttpServer, TakesOneThingFromItsOwnPagesAlone) {
+  std::vector<std::string> taken;
+  cli::HttpServer server(0);
+  const auto take = [&taken](const std::string& body) {
+    taken.push_back(body);
+    return "{\"got\": " + std::to_string(body.size()) + "}";
+  };
+  const HttpSite site({{"/", {"text/plain", "the page", nullptr}}}, server.port(), cli::HttpTaker{"/save", 100, take});
+  Progress progress;
+  std::thread thread([&] { server.run(site, progress); });
+  const int port = server.port();
+  const std::string ours = fmt::format("Origin: http://127.0.0.1:{}\r\n", port);
+  const auto put = [&](const std::string& line, const std::string& fields, const std::string& body) {
+    return ask(port, request(line, port, fmt::format("{}Content-Length: {}\r\n", fields, body.size())) + body);
+  };
+  EXPECT_THAT(put("PUT /save", ours, "hello"), testing::AllOf(StartsWith("HTTP/1.1 200"), HasSubstr("application/json"),
+                                                              testing::EndsWith("{\"got\": 5}")));
+  EXPECT_THAT(put("PUT /save", ours, std::string(100, 'x')), StartsWith("HTTP/1.1 200"));
+  EXPECT_THAT(put("PUT /save", ours, std::string(101, 'x')), StartsWith("HTTP/1.1 413"));
+  EXPECT_THAT(put("PUT /save", "", "hello"), StartsWith("HTTP/1.1 405")) << "no browser leaves Origin out";
+  EXPECT_THAT(put("PUT /save", "Origin: http://evil.example\r\n", "hello"), StartsWith("HTTP/1.1 403"));
+  EXPECT_THAT(put("PUT /save", "Origin: null\r\n", "hello"), StartsWith("HTTP/1.1 403"));
+  EXPECT_THAT(put("PUT /save", ours + "Sec-Fetch-Site: cross-site\r\n", "hello"), StartsWith("HTTP/1.1 403"));
+  EXPECT_THAT(put("POST /save", ours, "hello"), StartsWith("HTTP/1.1 405"));
+  EXPECT_THAT(put("PUT /", ours, "hello"), StartsWith("HTTP/1.1 405"));
+  EXPECT_THAT(
+      ask(port, request("PUT /save", port, ours + "Transfer-Encoding: chunked\r\n") + "5\r\nhello\r\n0\r\n\r\n"),
+      StartsWith("HTTP/1.1 413"));
+  EXPECT_THAT(ask(port, request("GET /save", port)), StartsWith("HTTP/1.1 404"));
+  expectPage(port);
+  progress.cancel();
+  thread.join();
+  EXPECT_THAT(taken, testing::ElementsAre("hello", std::string(100, 'x')));
+}
+
 TEST_F(HttpServer, SendsFilesWhole) {
   serve({}, [&](int port) {
     expectPage(port);

@@ -104,9 +104,11 @@ TEST_F(OwnInputs, Evaluate) {
 
 TEST_F(OwnInputs, Report) {
   io::writeTextFile(at("compress.html"), R"({"facezip_report": "compress"})");
+  io::writeTextFile(at("register.html"), R"({"facezip_report": "register", "scans": [{"name": "neutral"}]})");
   const std::string report = "report " + q("capture") + " " + q("face") + " -o ";
   for (const char* page : {"capture/page.html", "face/page.html", "hard.html"}) expectRefusal(report + q(page));
   expectRefusal(report + q("compress.html") + " --compress-report " + q("compress.html"));
+  expectRefusal(report + q("register.html") + " --registration-report " + q("register.html"));
 }
 
 TEST_F(OwnInputs, BlendAndReconstruct) {

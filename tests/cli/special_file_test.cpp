@@ -109,6 +109,9 @@ TEST_F(SpecialFiles, OfPackagesClipsGainsAndTrackedMeshesAreRefused) {
   expectRefusal(folder_ / "report.json", "report " + quoted(capture()) + " " + package + " --output " +
                                              quoted(folder_ / "page.html") + " --compress-report " +
                                              quoted(folder_ / "report.json"));
+  expectRefusal(folder_ / "report.json", "report " + quoted(capture()) + " " + package + " --output " +
+                                             quoted(folder_ / "page.html") + " --registration-report " +
+                                             quoted(folder_ / "report.json"));
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include "../file_contents.hpp"
 #include "../temporary_directory.hpp"
 #include "facezip/error.hpp"
-#include "facezip/geometry/textured_obj.hpp"
+#include "facezip/geometry/textured_mesh.hpp"
 #include "test_meshes.hpp"
 
 namespace facezip::geometry {

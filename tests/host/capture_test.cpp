@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "face/face.hpp"
 #include "facezip/printable.hpp"
 #include "io/staged_directory.hpp"
 #include "notes.hpp"
@@ -14,6 +15,7 @@ namespace facezip {
 namespace {
 namespace fs = std::filesystem;
 using test::Notes;
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -55,6 +57,50 @@ TEST(Capture, DescriptionDecidesOrderFilesAndWeights) {
   ASSERT_EQ(capture.maps.size(), 1u);
   EXPECT_EQ(capture.maps[0].metric_weight, 0.5);
   EXPECT_EQ(capture.maps[0].expressions[1].filename(), "e00.png");
+}
+
+TEST(Capture, TexturesOfOneTileAreThoseOfItsUvs) {
+  const test::TemporaryDirectory folder;
+  const fs::path face = folder / "c";
+  test::writeSmallCapture(face, {.expressions = 2, .width = 16, .height = 16});
+  for (const char* name : {"neutral", "e00", "e01"}) {
+    fs::rename(face / "albedo" / (std::string(name) + ".png"), face / "albedo" / (std::string(name) + ".1012.png"));
+  }
+  geometry::TriangleMesh mesh = geometry::readObj(face / "neutral.obj");
+  const Eigen::MatrixX2d uvs = mesh.uvs;
+  mesh.uvs.rowwise() += Eigen::RowVector2d(1, 1);
+  const Eigen::Index last = mesh.uv_triangles.rows() - 1;
+  mesh.uvs.conservativeResize(mesh.uvs.rows() + 1, 2);  // a triangle of another tile: no texture of ours
+  mesh.uvs.bottomRows(1) << 4.5, 0.5;
+  mesh.uv_triangles.row(last).setConstant(static_cast<int>(mesh.uvs.rows()) - 1);
+  geometry::writeObj(face / "neutral.obj", mesh);
+  const Capture capture = openCapture(face);
+  EXPECT_EQ(capture.tile, 1012);
+  EXPECT_THAT(capture.expressions, ElementsAre("e00", "e01"));
+  EXPECT_EQ(capture.maps[0].expressions[1].filename(), "e01.1012.png");
+  const compress::Face read = compress::readFace(capture, "whole");
+  EXPECT_LT((read.mesh.uvs.topRows(uvs.rows()) - uvs).norm(), 1e-9);
+  EXPECT_EQ(std::ssize(read.region), last);
+  EXPECT_EQ(read.region_description, "whole mesh, tile 1012");
+}
+
+TEST(Capture, OfSeveralTilesOneIsChosen) {
+  const test::TemporaryDirectory folder;
+  const fs::path face = folder / "c";
+  test::writeSmallCapture(face, {.expressions = 2, .width = 16, .height = 16});
+  for (const char* name : {"neutral", "e00", "e01"}) {
+    const std::string file = (face / "albedo" / name).string();
+    fs::copy_file(file + ".png", file + ".1002.png");
+    fs::rename(file + ".png", file + ".1001.png");
+  }
+  EXPECT_THAT(failure(face), AllOf(HasSubstr("1001, 1002"), HasSubstr("\"tile\" in capture.json")));
+  io::writeTextFile(face / "capture.json", R"({"tile": 1003})");
+  EXPECT_THAT(failure(face), HasSubstr("1001, 1002"));
+  io::writeTextFile(face / "capture.json", R"({"tile": 1002})");
+  EXPECT_EQ(openCapture(face).maps[0].neutral.filename(), "neutral.1002.png");
+  EXPECT_THROW(compress::readFace(openCapture(face), "whole"), InputError) << "UVs lie in tile 1001";
+  io::writeTextFile(face / "capture.json", R"({"tile": 1001})");
+  EXPECT_NO_THROW(compress::readFace(openCapture(face), "whole"));
 }
 
 TEST(Capture, ImportanceIsFoundOrNamed) {

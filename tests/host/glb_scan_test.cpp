@@ -10,8 +10,8 @@
 #include "facezip/error.hpp"
 #include "io/read_file.hpp"
 #include "io/write_file.hpp"
-#include "mesh/glb.hpp"
 #include "register/scan_files.hpp"
+#include "scene/glb.hpp"
 #include "small_capture.hpp"
 #include "temporary_directory.hpp"
 
@@ -66,7 +66,7 @@ class GlbScan : public testing::Test {
     return begin;
   }
   fs::path write(const std::string& name = "face.glb") const {
-    io::writeTextFile(folder_ / name, mesh::joinGlb(document_.dump(), binary_));
+    io::writeTextFile(folder_ / name, scene::joinGlb(document_.dump(), binary_));
     return folder_ / name;
   }
   void expectRefused(const std::string& part) const {

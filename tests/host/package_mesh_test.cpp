@@ -10,8 +10,8 @@
 #include <ostream>
 
 #include "file_contents.hpp"
-#include "mesh/glb.hpp"
 #include "mesh/gltf_scene.hpp"
+#include "scene/glb.hpp"
 #include "small_capture.hpp"
 #include "temporary_directory.hpp"
 
@@ -39,11 +39,11 @@ struct Parts {
   std::string binary;
 
   static Parts of(const std::string& file) {
-    const mesh::GlbParts parts = mesh::splitGlb(std::as_bytes(std::span(file)), "good");
+    const scene::GlbParts parts = scene::splitGlb(std::as_bytes(std::span(file)), "good");
     return {json::parse(parts.json),
             std::string(reinterpret_cast<const char*>(parts.binary.data()), parts.binary.size())};
   }
-  std::string file() const { return mesh::joinGlb(document.dump(), std::as_bytes(std::span(binary))); }
+  std::string file() const { return scene::joinGlb(document.dump(), std::as_bytes(std::span(binary))); }
 
   json& primitive() { return document["meshes"][0]["primitives"][0]; }
   /// The accessor of an attribute.
@@ -113,7 +113,7 @@ TEST(PackageMesh, TruncatedAtEveryLengthIsRefused) {
 }
 
 TEST(PackageMesh, NestingAndNumbersOfValuesAreLimited) {
-  const auto file = [](const std::string& text) { return mesh::joinGlb(text, {}); };
+  const auto file = [](const std::string& text) { return scene::joinGlb(text, {}); };
   for (const char* open : {"[", "{\"a\":"}) {
     std::string deep;
     for (int i = 0; i < 200000; ++i) deep += open;

@@ -1,7 +1,11 @@
 #include "facezip/registration.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
 
 #include "facezip/capture.hpp"
 #include "facezip/error.hpp"
@@ -10,6 +14,7 @@
 #include "facezip/geometry/topology.hpp"
 #include "facezip/report.hpp"
 #include "register/hole_filling.hpp"
+#include "register/registration_picture.hpp"
 #include "scan_set.hpp"
 #include "temporary_directory.hpp"
 #include "test_device.hpp"
@@ -186,6 +191,50 @@ TEST(Registration, WhatTheMeshFollowsIsNeitherInNormalsNorInHeights) {
   EXPECT_LT(off / count, 0.2);
 }
 
+TEST(Registration, ColouredVerticesOfPlyFilesAreATextureToo) {
+  const Registered& made = Registered::once();
+  const test::TemporaryDirectory folder;
+  io::createDirectories(folder / "scans");
+  fs::copy(made.folder / "scans/landmarks.json", folder / "scans/landmarks.json");
+  for (const char* name : {"neutral", "open"}) {
+    const geometry::TriangleMesh scan = geometry::readObj(made.folder / "scans/scans" / (std::string(name) + ".obj"));
+    std::string text = fmt::format(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\n"
+        "property uchar red\nproperty uchar green\nproperty uchar blue\nelement face {}\n"
+        "property list uchar int vertex_indices\nend_header\n",
+        scan.positions.rows(), scan.triangles.rows());
+    for (Eigen::Index v = 0; v < scan.positions.rows(); ++v) {
+      const int skin = static_cast<int>(test::ScanSet::skin(1.0 - scan.uvs(v, 1), scan.uvs(v, 0)));
+      text += fmt::format("{} {} {} {} {} {}\n", scan.positions(v, 0), scan.positions(v, 1), scan.positions(v, 2), skin,
+                          skin / 2, 10);
+    }
+    for (const auto& t : scan.triangles.rowwise()) text += fmt::format("3 {} {} {}\n", t[0], t[1], t[2]);
+    io::writeTextFile(folder / "scans" / (std::string(name) + ".ply"), text);
+  }
+  RegistrationOptions options;
+  options.resolution = kSide;
+  options.unit = "cm";
+  options.last_step = RegistrationStep::kBending;
+  Notes notes;
+  registerScans(folder / "scans", made.folder / "template", folder / "capture", options, test::testDevice(), notes);
+  const image::Image confidence = image::readImage(folder / "capture/confidence/open.png");
+  const image::Image open = image::readImage(folder / "capture/albedo/open.png");
+  ASSERT_EQ(open.shape, (image::ImageShape{kSide, kSide, 3, image::SampleType::kUint8}));
+  double error = 0.0, contrast = 0.0;
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      const auto at = static_cast<std::size_t>(y * kSide + x);
+      if (image::sampleAt(confidence, at) < 0.5f) continue;
+      const double expected = test::ScanSet::skin((x + 0.5) / kSide, 1.0 - (y + 0.5) / kSide);
+      error += std::abs(255.0 * double{image::sampleAt(open, 3 * at)} - expected);
+      contrast += std::abs(128.0 - expected);
+      EXPECT_NEAR(255.0 * double{image::sampleAt(open, 3 * at + 2)}, 10.0, 1.0);
+    }
+  }
+  EXPECT_GT(contrast, 0.0);
+  EXPECT_LT(error, 0.35 * contrast);
+}
+
 TEST(Registration, TheHeadsMotionIsTakenOutAndTold) {
   const RegisteredScan& open = Registered::once().report.scans[1];
   EXPECT_NEAR(open.degrees, (0.03 + 0.05) * 180.0 / 3.14159265, 0.7);
@@ -200,6 +249,55 @@ TEST(Registration, ReportsAsJson) {
   EXPECT_GT(report["scans"][1]["head_motion"]["degrees"].get<double>(), 1.0);
   EXPECT_GE(report["scans"][1]["flow_texels"]["rounds"].get<int>(), 1);
   EXPECT_GE(report["flow_side"].get<int>(), 256);
+}
+
+TEST(Registration, EachScanHasItsPicture) {
+  const Registered& made = Registered::once();
+  for (const char* name : {"neutral.png", "open.png"}) {
+    const image::Image picture = image::readImage(made.folder / "capture/registration" / name);
+    constexpr int kPicture = registration::kPictureSide;
+    ASSERT_EQ(picture.shape, (image::ImageShape{3 * kPicture, kPicture, 3, image::SampleType::kUint8}));
+    const auto red = [&](int x, int y) {
+      return image::sampleAt(picture, 3 * static_cast<std::size_t>(y * 3 * kPicture + x));
+    };
+    int near = 0;
+    for (int y = kPicture / 3; y < 2 * kPicture / 3; ++y) {
+      for (int x = kPicture / 3; x < 2 * kPicture / 3; ++x) near += red(kPicture + x, y) < 0.35f ? 1 : 0;
+    }
+    EXPECT_GT(near, kPicture * kPicture / 12) << "the mesh lies on its scan";
+  }
+}
+
+TEST(RegistrationPicture, ShowsEdgesDistancesAndTexture) {
+  const geometry::TriangleMesh mesh = test::gridMesh(3, 0.0);
+  std::vector<int> region(static_cast<std::size_t>(mesh.triangles.rows()));
+  std::iota(region.begin(), region.end(), 0);
+  registration::BakedTexture texture;
+  texture.side = 2;
+  texture.channels = 3;
+  for (const float grey : {0.1f, 0.2f, 0.3f, 0.4f}) texture.samples.insert(texture.samples.end(), 3, grey);
+  std::vector<float> distances(9, 0.0f);
+  distances[8] = 1.0f;           // the upper right corner
+  distances[0] = std::nanf("");  // the lower left one
+  const image::Image picture = registration::pictureOf(registration::frontOf(mesh, mesh.positions, region), mesh,
+                                                       mesh.positions, distances, texture);
+  constexpr int kPicture = registration::kPictureSide;
+  // Places of the patch, which fills the picture's height: 0.25 high, 0.2 wide.
+  const auto at = [&](int column, double s, double t) {
+    const int x = static_cast<int>(kPicture * (column + 0.5 + 0.92 * 0.8 * (s - 0.5)));
+    const int y = static_cast<int>(kPicture * (0.5 - 0.92 * (t - 0.5)));
+    return 255.0f * image::sampleAt(picture, 3 * static_cast<std::size_t>(y * 3 * kPicture + x));
+  };
+  EXPECT_NEAR(at(2, 0.25, 0.75), 255 * 0.1, 1.0);
+  EXPECT_NEAR(at(2, 0.75, 0.75), 255 * 0.2, 1.0);
+  EXPECT_NEAR(at(2, 0.25, 0.25), 255 * 0.3, 1.0);
+  EXPECT_NEAR(at(2, 0.75, 0.25), 255 * 0.4, 1.0);
+  EXPECT_GT(at(1, 0.98, 0.98), 230.0f) << "a millimetre";
+  EXPECT_LT(at(1, 0.25, 0.8), 5.0f) << "on the scan";
+  EXPECT_NEAR(at(1, 0.05, 0.02), at(1, 0.02, 0.05), 12.0f);
+  EXPECT_GT(at(1, 0.05, 0.02), 60.0f) << "nothing shown: grey";
+  EXPECT_LT(at(0, 0.5, 0.8), 0.8f * at(0, 0.4, 0.8)) << "an edge beside a face";
+  EXPECT_NEAR(at(0, -0.05, 0.5), 255 * 0.2, 1.0) << "beside the mesh";
 }
 
 TEST(HoleFilling, KeepsWhatIsKnownAndGoesOnSmoothly) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "mesh/gltf_scene.hpp"
 #include "notes.hpp"
 #include "rig_capture.hpp"
 #include "temporary_directory.hpp"
@@ -39,6 +40,29 @@ TEST_F(RigTemplateTest, TheNeutralHasSeveralNames) {
   EXPECT_EQ(read().names.size(), 3u);
   EXPECT_THAT(notes_.all, testing::IsEmpty());
   fs::copy_file(folder() / "generic_neutral_mesh.obj", folder() / "neutral.obj");
+  EXPECT_THROW(read(), InputError);
+}
+
+TEST_F(RigTemplateTest, ShapesMayBeTheMorphTargetsOfOneFile) {
+  const rig::RigTemplate before = read();
+  mesh::GltfScene scene;
+  scene.neutral = before.neutral;
+  for (std::size_t m = 0; m < before.names.size(); ++m) scene.targets.push_back({before.names[m], before.shapes[m]});
+  mesh::writeGltf(folder_ / "shapes.glb", scene);
+  fs::remove_all(folder());
+  fs::create_directory(folder());
+  fs::rename(folder_ / "shapes.glb", folder() / "shapes.glb");
+  const rig::RigTemplate found = read();
+  EXPECT_EQ(found.names, before.names);
+  ASSERT_EQ(found.neutral.triangles.rows(), before.neutral.triangles.rows());
+  for (std::size_t m = 0; m < found.names.size(); ++m) {
+    for (Eigen::Index t = 0; t < found.neutral.triangles.rows(); ++t) {
+      const Eigen::RowVector3d got = found.shapes[m].row(found.neutral.triangles(t, 1)),
+                               expected = before.shapes[m].row(before.neutral.triangles(t, 1));
+      EXPECT_LT((got - expected).norm(), 1e-5);
+    }
+  }
+  fs::copy_file(folder() / "shapes.glb", folder() / "more.glb");
   EXPECT_THROW(read(), InputError);
 }
 

@@ -379,9 +379,12 @@ await run('the report shows plots, pictures and sliders without a network', asyn
   assert.ok(images.length > 3 * names.length * description.maps.length && images.every((width) => width > 0), `${images}`);
   await report.locator('.expression input').first().fill('80');
   assert.match(await report.locator('.pair .over').first().getAttribute('style'), /80%/);
-  for (const heading of ['Quality and memory', 'Expressions: albedo, captured and decoded', 'Expressions: normal, captured and decoded', 'Convergence of the permutation search', 'Error against the number of masks: albedo']) {
+  for (const heading of ['Quality and memory', 'Registration', 'Expressions: albedo, captured and decoded', 'Expressions: normal, captured and decoded', 'Convergence of the permutation search', 'Error against the number of masks: albedo']) {
     assert.equal(await report.getByRole('heading', { name: heading }).count(), 1, heading);
   }
+  assert.equal(await report.locator('td', { hasText: '<b>bold</b>' }).count(), 1);
+  assert.equal(await report.locator('td', { hasText: '1.46 \u2192 0.10' }).count(), 1);
+  assert.equal(await report.getByAltText('neutral: mesh, distance, texture').count(), 1);
   await report.screenshot({ path: join(work, 'report.png'), fullPage: true });
   await report.setViewportSize({ width: 380, height: 700 });
   assert.ok(await report.evaluate(() => document.documentElement.scrollWidth) <= 380, 'wider than a phone');

@@ -13,6 +13,7 @@
 #include "facezip/frame_file.hpp"
 #include "facezip/gain.hpp"
 #include "facezip/html_report.hpp"
+#include "facezip/landmarks.hpp"
 #include "facezip/learn.hpp"
 #include "facezip/memory.hpp"
 #include "facezip/method.hpp"

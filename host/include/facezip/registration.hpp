@@ -79,7 +79,7 @@ ProtectedPaths inputsOf(const std::filesystem::path& scans, const std::filesyste
 /// Registers the scans of a directory to a template and writes them as a capture (docs/registration.md):
 /// neutral.obj, expressions/NAME.obj, albedo/NAME.png, confidence/NAME.png, face_region.txt, capture.json. The capture
 /// appears whole or not at all; an earlier one that this made is replaced.
-/// scans               NAME.obj or NAME.glb with a texture each, "neutral" among them, and landmarks.json
+/// scans               NAME.obj, NAME.ply or NAME.glb with textures or coloured vertices, "neutral" among them, and landmarks.json
 /// template_directory  neutral.obj with UVs, landmarks.json; shapes (NAME.obj) and identity modes where it has any
 /// Throws InputError (a file, an option, scans that do not fit the template), DeviceError, OutputError, SolverError,
 /// Cancelled.

@@ -5,11 +5,11 @@
 #include <nlohmann/json.hpp>
 
 #include "align/texture_slide.hpp"
+#include "capture/capture_meshes.hpp"
 #include "face/face.hpp"
 #include "facezip/alignment.hpp"
 #include "facezip/error.hpp"
 #include "facezip/geometry/obj_io.hpp"
-#include "facezip/geometry/topology.hpp"
 #include "facezip/geometry/uv_slide.hpp"
 #include "image/set_sample.hpp"
 #include "io/counts.hpp"
@@ -33,6 +33,7 @@ struct Job {
   const AlignmentOptions& options;
   const CaptureMap& guide;
   const compress::Face face;
+  const CaptureMeshes meshes;
   device::DeviceContext& context;
   Progress& progress;
   fs::path directory;
@@ -52,6 +53,11 @@ const CaptureMap& guideOf(const Capture& capture, const std::string& name) {
 void copyFile(const fs::path& from, const fs::path& to) {
   io::createDirectories(to.parent_path());
   io::writeTextFile(to, io::readFile(from, "a file of the capture", "", kMostBytes));
+}
+
+/// Meshes are copied as they are: not morph targets, nor UVs of another tile than the first.
+bool isCopied(const Capture& capture) {
+  return !scene::isSceneFile(capture.neutral_mesh) && capture.tile.value_or(kFirstTile) == kFirstTile;
 }
 
 /// Where a texture of the new capture goes: what is resampled is written as it can be without loss.
@@ -89,18 +95,18 @@ void writeMesh(const Job& job, std::size_t expression, const Slide& slide) {
   const fs::path& from = job.capture.expression_meshes[expression];
   if (from.empty()) return;
   const fs::path to = job.directory / "expressions" / (slide.found.name + ".obj");
-  if (!slide.found.moved || job.options.keep_meshes) return copyFile(from, to);
-  const geometry::TriangleMesh expression_mesh = geometry::readObj(from);
-  geometry::requireSameTopology(job.face.mesh, job.capture.neutral_mesh.string(), expression_mesh, from.string());
+  const bool moved = slide.found.moved && !job.options.keep_meshes;
+  if (!moved && isCopied(job.capture)) return copyFile(from, to);
   geometry::TriangleMesh mesh = job.face.mesh;  // expressions need no UVs of their own
-  mesh.positions = expression_mesh.positions;
+  mesh.positions = job.meshes.positions(expression);
+  io::createDirectories(to.parent_path());
+  if (!moved) return geometry::writeObj(to, mesh);
   Eigen::MatrixX2d vectors(mesh.uvs.rows(), 2);
   for (Eigen::Index v = 0; v < vectors.rows(); ++v) {
     const Eigen::RowVector2d texels = slide.field.at(mesh.uvs(v, 0), mesh.uvs(v, 1));
     vectors.row(v) << texels.x() / slide.field.width, -texels.y() / slide.field.height;
   }
   mesh.positions = geometry::slideAlongUvs(mesh, vectors);
-  io::createDirectories(to.parent_path());
   geometry::writeObj(to, mesh);
 }
 
@@ -122,7 +128,12 @@ AlignedExpression alignExpression(const Job& job, const TextureSlide& textures, 
 
 void copyRest(const Job& job) {
   const Capture& capture = job.capture;
-  copyFile(capture.neutral_mesh, job.directory / "neutral.obj");
+  const fs::path neutral = job.directory / "neutral.obj";
+  if (isCopied(capture)) {
+    copyFile(capture.neutral_mesh, neutral);
+  } else {
+    geometry::writeObj(neutral, job.face.mesh);
+  }
   for (const CaptureMap& map : capture.maps) {
     copyFile(map.neutral, textureFile(job, map, "neutral", map.neutral, false));
   }
@@ -180,8 +191,9 @@ AlignmentReport alignCapture(const Capture& capture, const fs::path& output, con
   inputsOf(capture, options).requireApartFromFolder(output);
   const CaptureMap& guide = guideOf(capture, options.map);
   io::StagedDirectory staged(output, {kManifest, "\"generator\": \"facezip align\"", everyFile}, &progress);
-  const Job job{capture,          options,  guide,        compress::readFace(capture, options.region),
-                device.context(), progress, staged.path()};
+  const Job job{
+      capture,          options,  guide,        compress::readFace(capture, options.region), CaptureMeshes(capture),
+      device.context(), progress, staged.path()};
   const TextureSlide textures(job.face.mesh, job.face.region, guide.neutral, job.context, progress);
   AlignmentReport report;
   report.map = guide.name;

@@ -16,6 +16,7 @@
 #include "io/composed.hpp"
 #include "io/quoted.hpp"
 #include "io/safe_names.hpp"
+#include "scene/morph_mesh.hpp"
 
 namespace facezip {
 namespace fs = std::filesystem;
@@ -87,6 +88,10 @@ fs::path neutralMesh(const fs::path& directory, const CaptureJson& description) 
     }
     if (!found.empty()) return found.rbegin()->second;
   }
+  if (const fs::path file =
+          scene::sceneFileIn(directory, fmt::format("name one as \"neutral_mesh\" in {}", kCaptureFile));
+      !file.empty())
+    return file;
   return directory / ((description.neutral.empty() ? "neutral" : description.neutral) + ".obj");
 }
 
@@ -140,6 +145,7 @@ Capture openCapture(const fs::path& directory, const std::vector<std::string>& m
   capture.name = description.name.empty() ? nameOf(directory) : description.name;
   capture.unit = description.unit;
   capture.neutral_mesh = neutralMesh(directory, description);
+  capture.mesh_name = description.mesh;
   if (const std::string fault = faultOfFile(capture.neutral_mesh); !fault.empty()) {
     throw InputError({capture.neutral_mesh.string(), "", "the mesh of the neutral", fault, ""});
   }
@@ -149,6 +155,7 @@ Capture openCapture(const fs::path& directory, const std::vector<std::string>& m
     used[name] = found.at(name);
     requireName(name, "map", used[name].source);
   }
+  capture.tile = chooseTile(directory, description.tile, used);
   requireTextures(used);
   capture.expressions = expressionNames(directory, description, used, neutral_alone);
   for (const std::string& name : chosen) requireKnownExpressions(name, description, capture.expressions, directory);
@@ -158,7 +165,9 @@ Capture openCapture(const fs::path& directory, const std::vector<std::string>& m
     throw InputError(
         {(directory / kCaptureFile).string(), "expression_meshes", "expressions of the capture", io::quoted(name), ""});
   }
-  capture.expression_meshes = findExpressionMeshes(directory, description, capture.expressions, progress);
+  capture.expression_meshes = scene::isSceneFile(capture.neutral_mesh)
+                                  ? findMorphTargets(capture, description, progress)
+                                  : findExpressionMeshes(directory, description, capture.expressions, progress);
   capture.face_region = optionalFile(directory, description.face_region, "face_region.txt");
   capture.coverage = optionalFile(directory, description.coverage, "coverage.png");
   capture.importance = optionalFile(directory, description.importance, "importance.png");

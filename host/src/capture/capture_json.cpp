@@ -1,5 +1,6 @@
 #include "capture/capture_json.hpp"
 
+#include "capture/found_maps.hpp"
 #include "facezip/error.hpp"
 #include "image/map_fields.hpp"
 #include "io/composed.hpp"
@@ -59,6 +60,8 @@ std::optional<CaptureJson> readCaptureJson(const fs::path& file) {
   description.neutral = io::composed(optionalText(root, "neutral"));
   description.meshes = optionalText(root, "meshes");
   description.neutral_mesh = optionalText(root, "neutral_mesh");
+  description.mesh = io::composed(optionalText(root, "mesh"));
+  if (root.has("tile")) description.tile = root["tile"].integer(kFirstTile, kLastTile);
   description.face_region = optionalText(root, "face_region");
   description.coverage = optionalText(root, "coverage");
   description.importance = optionalText(root, "importance");

@@ -24,7 +24,9 @@ struct CaptureJson {
   std::string unit;
   std::string neutral;  ///< what the neutral's files are called; "": "neutral"
   std::string neutral_mesh;
-  std::string meshes;  ///< folder of the expressions' meshes, relative to the capture; "" if not named
+  std::string mesh;         ///< in neutral_mesh, where that holds several
+  std::optional<int> tile;  ///< of UDIM
+  std::string meshes;       ///< folder of the expressions' meshes, relative to the capture; "" if not named
   std::string face_region;
   std::string coverage;
   std::string importance;

@@ -9,6 +9,7 @@
 #include "capture/mesh_names.hpp"
 #include "facezip/geometry/obj_io.hpp"
 #include "io/composed.hpp"
+#include "scene/morph_mesh.hpp"
 
 namespace facezip {
 namespace fs = std::filesystem;
@@ -166,6 +167,25 @@ std::vector<fs::path> findExpressionMeshes(const fs::path& capture, const Captur
   if (none && !expressions.empty()) {
     noteNone(capture, others, *progress);
   }
+  return taken;
+}
+
+std::vector<fs::path> findMorphTargets(const Capture& capture, const CaptureJson& description, Progress* progress) {
+  const scene::MorphMesh morphs = scene::readMorphMesh(capture.neutral_mesh, capture.mesh_name);
+  Meshes meshes;
+  for (const auto& [name, positions] : morphs.positions) meshes.emplace(name, name);
+  std::vector<fs::path> taken;
+  for (const std::string& name : capture.expressions) {
+    const auto named = description.expression_meshes.find(name);
+    taken.push_back(named != description.expression_meshes.end() ? capture.directory / named->second
+                    : morphs.positions.contains(name)            ? capture.neutral_mesh
+                                                                 : fs::path());
+  }
+  if (progress == nullptr) return taken;
+  if (!morphs.note.empty()) progress->note(morphs.note);
+  noteUnmatched(capture.neutral_mesh, meshes, description.neutral, capture.expressions, taken, *progress);
+  const bool none = std::ranges::all_of(taken, [](const fs::path& mesh) { return mesh.empty(); });
+  if (none && !capture.expressions.empty()) noteNone(capture.directory, {}, *progress);
   return taken;
 }
 

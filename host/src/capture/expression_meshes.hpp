@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "capture/capture_json.hpp"
+#include "facezip/capture.hpp"
 #include "facezip/progress.hpp"
 
 namespace facezip {
@@ -22,5 +23,11 @@ std::vector<std::filesystem::path> findExpressionMeshes(const std::filesystem::p
                                                         const CaptureJson& description,
                                                         const std::vector<std::string>& expressions,
                                                         Progress* progress);
+
+/// The same where the neutral's file has morph targets: that file for each expression that one is named after, and what
+/// capture.json names for others. progress  as above; may be null
+/// Throws InputError for a file that cannot be read.
+std::vector<std::filesystem::path> findMorphTargets(const Capture& capture, const CaptureJson& description,
+                                                    Progress* progress);
 
 }  // namespace facezip

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <set>
+#include <string>
 #include <system_error>
 
 #include "facezip/input_file.hpp"
@@ -43,6 +45,18 @@ std::vector<fs::directory_entry> entriesOf(const fs::path& folder) {
   return entries;
 }
 
+/// Takes the tile off a name: "neutral.1001" is the neutral's in tile 1001.
+std::optional<int> takeTile(std::string& name) {
+  const std::size_t dot = name.rfind('.');
+  if (dot == std::string::npos || dot == 0 || name.size() != dot + 5) return std::nullopt;
+  const std::string digits = name.substr(dot + 1);
+  if (!std::ranges::all_of(digits, [](char c) { return '0' <= c && c <= '9'; })) return std::nullopt;
+  const int tile = std::stoi(digits);
+  if (tile < kFirstTile || tile > kLastTile) return std::nullopt;
+  name.erase(dot);
+  return tile;
+}
+
 /// The images of a folder. neutral  name of the neutral's
 FoundMap readFolder(const fs::path& folder, const std::string& neutral) {
   FoundMap map;
@@ -52,8 +66,14 @@ FoundMap readFolder(const fs::path& folder, const std::string& neutral) {
     const fs::path& file = entry.path();
     map.has_meshes = map.has_meshes || isMesh(file);
     if (!isImage(file)) continue;
-    const std::string name = io::composed(file.stem().string());
-    const auto [it, inserted] = map.images.emplace(name == neutral ? kNeutral : name, file);
+    std::string name = io::composed(file.stem().string());
+    const std::optional<int> tile = takeTile(name);
+    if (name == neutral) name = kNeutral;
+    if (tile && map.tiles[*tile].emplace(name, file).second) {
+      map.images.emplace(name, file);  // until a tile is chosen
+      continue;
+    }
+    const auto [it, inserted] = map.images.emplace(name, file);
     if (inserted) continue;
     std::string& files = map.repeated.try_emplace(it->first, it->second.filename().string()).first->second;
     files += " and " + file.filename().string();
@@ -194,6 +214,31 @@ CaptureMap makeMap(const std::string& name, const Maps& maps, const std::vector<
   map.neutral = textureOf(name, kNeutral, maps);
   for (const std::string& expression : expressions) map.expressions.push_back(textureOf(name, expression, maps));
   return map;
+}
+
+std::optional<int> chooseTile(const fs::path& directory, std::optional<int> wanted, Maps& maps) {
+  std::set<int> tiles;
+  for (const auto& [name, map] : maps) {
+    for (const auto& [tile, images] : map.tiles) tiles.insert(tile);
+  }
+  if (tiles.empty() && !wanted) return std::nullopt;
+  if (wanted ? !tiles.contains(*wanted) : tiles.size() > 1) {
+    throw InputError({directory.string(), "tiles",
+                      wanted ? fmt::format("textures of tile {}", *wanted) : "textures of one",
+                      tiles.empty() ? "none that name a tile" : fmt::format("those of {}", fmt::join(tiles, ", ")),
+                      fmt::format("choose one by \"tile\" in {}: each makes a package of its own", kCaptureFile)});
+  }
+  const int tile = wanted.value_or(*tiles.begin());
+  for (auto& [name, map] : maps) {
+    for (const auto& [other, images] : map.tiles) {
+      for (const auto& [image, file] : images) {
+        if (other != tile && map.images[image] == file) map.images.erase(image);
+      }
+    }
+    if (!map.tiles.contains(tile)) continue;
+    for (const auto& [image, file] : map.tiles.at(tile)) map.images[image] = file;
+  }
+  return tile;
 }
 
 }  // namespace facezip

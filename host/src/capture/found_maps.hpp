@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,15 @@ struct FoundMap {
   std::map<std::string, std::filesystem::path> images;  ///< by expression; the neutral's is "neutral"
   std::map<std::string, std::string> repeated;          ///< names that several images have: "a.png and a.tif"
   bool has_meshes = false;
+  std::map<int, std::map<std::string, std::filesystem::path>> tiles;  ///< the images again, of NAME.1001.EXT and such
 };
+
+inline constexpr int kLastTile = 1999;
+
+/// The tile of the maps' textures; none where they have no tiles. Their `images` are then that tile's.
+/// wanted  what capture.json says. Throws InputError: several and none is wanted, or another one.
+std::optional<int> chooseTile(const std::filesystem::path& directory, std::optional<int> wanted,
+                              std::map<std::string, FoundMap>& maps);
 
 /// The maps that capture.json names; where it names none, the folders of images. Those of previews and references are
 /// left out: folders without a neutral whose images have the names of no map's, and folders of meshes, where others

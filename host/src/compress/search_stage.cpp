@@ -87,7 +87,7 @@ SearchedWeights influenceWeights(const Capture& capture, const Face& face, const
                                  int weight_scale, const device::Run& run) {
   run.progress.stage("influences", 0);
   const std::vector<Eigen::MatrixX3d> meshes =
-      readExpressionMeshes(capture, face.mesh, "its mesh, for its influence", run.progress);
+      readExpressionMeshes(capture, "its mesh, for its influence", run.progress);
   SearchedWeights searched;
   searched.weights =
       encodeShares(normalisedInfluences(face.mesh, vertexInfluences(face.mesh, meshes), raster, weight_scale));

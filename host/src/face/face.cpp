@@ -7,9 +7,9 @@
 #include <cmath>
 #include <span>
 
+#include "capture/capture_meshes.hpp"
 #include "face/painted_image.hpp"
 #include "facezip/geometry/float_origin.hpp"
-#include "facezip/geometry/obj_io.hpp"
 #include "facezip/geometry/topology.hpp"
 
 namespace facezip::compress {
@@ -35,11 +35,25 @@ std::vector<int> regionFromFile(const geometry::TriangleMesh& mesh, const fs::pa
   return paintedRegion(mesh, file);
 }
 
+/// Keeps the triangles that lie in the tile of the textures; others have textures elsewhere.
+void keepTile(const Capture& capture, Face& face) {
+  std::erase_if(face.region, [&](int triangle) {
+    const Eigen::Matrix<double, 3, 2> corners = face.mesh.uvs(face.mesh.uv_triangles.row(triangle), Eigen::all);
+    const Eigen::RowVector2d middle = corners.colwise().mean();
+    return middle.minCoeff() < 0.0 || middle.maxCoeff() > 1.0;
+  });
+  face.region_description += fmt::format(", tile {}", *capture.tile);
+  if (!face.region.empty()) return;
+  throw InputError({capture.neutral_mesh.string(), "",
+                    fmt::format("UVs in tile {}, as the textures' names say", *capture.tile), "none of the region",
+                    ""});
+}
+
 }  // namespace
 
 Face readFace(const Capture& capture, const std::string& region) {
   Face face;
-  face.mesh = geometry::readObj(capture.neutral_mesh);
+  face.mesh = CaptureMeshes(capture).neutral();
   std::optional<fs::path> file;
   if (region.empty()) {
     file = capture.face_region ? capture.face_region : capture.coverage;
@@ -50,28 +64,26 @@ Face readFace(const Capture& capture, const std::string& region) {
   if (face.mesh.uv_triangles.rows() == 0) geometry::requireUvs(face.mesh, capture.neutral_mesh.string());
   face.region = file ? regionFromFile(face.mesh, *file) : geometry::wholeMeshRegion(face.mesh);
   face.region_description = file ? file->filename().string() : "whole mesh";
+  if (capture.tile) keepTile(capture, face);
   geometry::requireUvs(face.mesh, capture.neutral_mesh.string(), face.region);
   return face;
 }
 
-std::vector<Eigen::MatrixX3f> readExpressionMeshes(const Capture& capture, const geometry::TriangleMesh& neutral,
-                                                   Progress& progress) {
+std::vector<Eigen::MatrixX3f> readExpressionMeshes(const Capture& capture, Progress& progress) {
   progress.stage("checking meshes", capture.expression_meshes.size());
   std::vector<Eigen::MatrixX3f> positions(capture.expression_meshes.size());
-  const Eigen::RowVector3d origin = geometry::floatOrigin(neutral.positions);
+  const CaptureMeshes from(capture);
+  const Eigen::RowVector3d origin = geometry::floatOrigin(from.neutral().positions);
   tbb::parallel_for(std::size_t{0}, capture.expression_meshes.size(), [&](std::size_t n) {
-    const fs::path& file = capture.expression_meshes[n];
-    if (file.empty()) return;
+    if (capture.expression_meshes[n].empty()) return;
     progress.checkCancelled();
-    const geometry::TriangleMesh mesh = geometry::readObj(file);
-    geometry::requireSameTopology(neutral, capture.neutral_mesh.string(), mesh, file.string());
-    positions[n] = (mesh.positions.rowwise() - origin).cast<float>();
+    positions[n] = (from.positions(n).rowwise() - origin).cast<float>();
   });
   return positions;
 }
 
-std::vector<Eigen::MatrixX3d> readExpressionMeshes(const Capture& capture, const geometry::TriangleMesh& neutral,
-                                                   const std::string& needed_for, Progress& progress) {
+std::vector<Eigen::MatrixX3d> readExpressionMeshes(const Capture& capture, const std::string& needed_for,
+                                                   Progress& progress) {
   for (std::size_t n = 0; n < capture.expressions.size(); ++n) {
     if (!capture.expression_meshes[n].empty()) continue;
     throw InputError({(capture.directory / "expressions" / (capture.expressions[n] + ".obj")).string(),
@@ -79,13 +91,11 @@ std::vector<Eigen::MatrixX3d> readExpressionMeshes(const Capture& capture, const
                       "add the mesh, or take the expression out of the capture"});
   }
   progress.stage("reading expressions", capture.expressions.size());
+  const CaptureMeshes from(capture);
   std::vector<Eigen::MatrixX3d> meshes(capture.expressions.size());
   tbb::parallel_for(std::size_t{0}, meshes.size(), [&](std::size_t n) {
     progress.checkCancelled();
-    const fs::path& file = capture.expression_meshes[n];
-    const geometry::TriangleMesh mesh = geometry::readObj(file);
-    geometry::requireSameTopology(neutral, capture.neutral_mesh.string(), mesh, file.string());
-    meshes[n] = mesh.positions;
+    meshes[n] = from.positions(n);
   });
   return meshes;
 }

@@ -30,13 +30,12 @@ Face readFace(const Capture& capture, const std::string& region);
 /// Reads every expression mesh of the capture and checks it against the neutral. Returns the positions of each, #V by
 /// 3, less geometry::floatOrigin() of the neutral; 0 rows where an expression has no mesh. Throws InputError naming the
 /// first that differs.
-std::vector<Eigen::MatrixX3f> readExpressionMeshes(const Capture& capture, const geometry::TriangleMesh& neutral,
-                                                   Progress& progress);
+std::vector<Eigen::MatrixX3f> readExpressionMeshes(const Capture& capture, Progress& progress);
 
 /// Positions of every expression's mesh, N. needed_for  for the message where one is missing, "its mesh, to ..."
 /// Throws InputError where an expression has no mesh, or one of another topology.
-std::vector<Eigen::MatrixX3d> readExpressionMeshes(const Capture& capture, const geometry::TriangleMesh& neutral,
-                                                   const std::string& needed_for, Progress& progress);
+std::vector<Eigen::MatrixX3d> readExpressionMeshes(const Capture& capture, const std::string& needed_for,
+                                                   Progress& progress);
 
 /// The masks of a face (FaceZip 3.1, "Mask Computation").
 struct FaceMasks {

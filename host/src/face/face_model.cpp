@@ -26,7 +26,7 @@ FaceModel readFaceModel(const Capture& capture, const CompressOptions& options, 
   run.progress.stage("reading meshes", 0);
   model.face = readFace(capture, options.region);
   // Read even where the package gets no mesh: a mesh of another topology is a fault of the capture.
-  model.expression_meshes = readExpressionMeshes(capture, model.face.mesh, run.progress);
+  model.expression_meshes = readExpressionMeshes(capture, run.progress);
   if (!options.mesh) model.expression_meshes.clear();
   const Eigen::RowVector3d origin = geometry::floatOrigin(model.face.mesh.positions);
   if (options.mesh && !origin.isZero(0.0)) run.progress.note(geometry::originNote(origin, "mesh.glb"));

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "capture/capture_meshes.hpp"
 #include "face/face.hpp"
-#include "facezip/geometry/obj_io.hpp"
 #include "facezip/geometry/topology.hpp"
 #include "facezip/learn.hpp"
 #include "io/stage_clock.hpp"
@@ -53,7 +53,7 @@ void requireTopology(const geometry::TriangleMesh& neutral, const fs::path& mesh
 Subject readSubject(const Capture& capture, const FaceModel& model, const fs::path& file, const std::string& unit,
                     Progress& progress) {
   Subject subject;
-  subject.neutral = geometry::readObj(capture.neutral_mesh);
+  subject.neutral = CaptureMeshes(capture).neutral();
   requireTopology(subject.neutral, capture.neutral_mesh, model, file);
   geometry::requireUvs(subject.neutral, capture.neutral_mesh.string());
   subject.unit = unitOf(capture, subject.neutral, unit, progress);

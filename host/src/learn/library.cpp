@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
+#include "capture/capture_meshes.hpp"
 #include "face/face.hpp"
 #include "facezip/geometry/length.hpp"
-#include "facezip/geometry/obj_io.hpp"
 #include "facezip/geometry/topology.hpp"
 #include "io/quoted.hpp"
 #include "rig/weight_guess.hpp"
@@ -108,13 +108,13 @@ geometry::LengthUnit unitOf(const Capture& capture, const geometry::TriangleMesh
 SubjectMeshes readMeshes(const Capture& capture, const Eigen::MatrixX3d& frame, const geometry::TriangleMesh* like,
                          const std::string& like_file, Progress& progress) {
   SubjectMeshes meshes;
-  meshes.neutral = geometry::readObj(capture.neutral_mesh);
+  meshes.neutral = CaptureMeshes(capture).neutral();
   if (like != nullptr) {
     geometry::requireSameTopology(*like, like_file, meshes.neutral, capture.neutral_mesh.string());
   }
   const double scale = 1000.0 * geometry::metresPerUnit(unitOf(capture, meshes.neutral, "", progress));
   const std::vector<Eigen::MatrixX3d> expressions =
-      compress::readExpressionMeshes(capture, meshes.neutral, "its mesh, to learn from", progress);
+      compress::readExpressionMeshes(capture, "its mesh, to learn from", progress);
   const Eigen::MatrixX3d still = scale * meshes.neutral.positions;
   geometry::Similarity motion;
   if (frame.rows() > 0) motion = geometry::fitSimilarity(still, frame, {}, /* fixed_scale= */ true);

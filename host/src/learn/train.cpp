@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "capture/capture_meshes.hpp"
 #include "face/face.hpp"
-#include "facezip/geometry/obj_io.hpp"
 #include "facezip/learn.hpp"
 #include "facezip/printable.hpp"
 #include "io/stage_clock.hpp"
@@ -51,7 +51,7 @@ LibraryMeshes readLibraryMeshes(const Library& library, const rig::RigTemplate& 
   LibraryMeshes meshes;
   progress.stage("reading meshes", library.subjects.size());
   const std::string first_file = library.subjects.front().neutral_mesh.string();
-  const geometry::TriangleMesh first = geometry::readObj(library.subjects.front().neutral_mesh);
+  const geometry::TriangleMesh first = CaptureMeshes(library.subjects.front()).neutral();
   rig::requireSkin(rig_template, first, first_file);
   Eigen::MatrixX3d frame;
   for (const Capture& subject : library.subjects) {

@@ -13,13 +13,16 @@
 #include "io/json_field.hpp"
 #include "io/memory_bound.hpp"
 #include "io/safe_names.hpp"
-#include "mesh/glb.hpp"
-#include "mesh/gltf_accessors.hpp"
+#include "scene/glb.hpp"
+#include "scene/gltf_accessors.hpp"
 
 namespace facezip::mesh {
 namespace {
 using io::JsonField;
 using nlohmann::json;
+using scene::Accessor;
+using scene::GltfAccessors;
+using scene::kFloat;
 using Bytes = std::span<const std::byte>;
 
 constexpr const char* kCure = "the mesh is damaged: write the package again";
@@ -160,7 +163,7 @@ const json& targetNamesOf(const PackageMesh& mesh) {
 PackageMesh parseMesh(std::string glb, const std::string& file, json materials) {
   PackageMesh mesh;
   mesh.file = std::make_shared<const std::string>(std::move(glb));
-  const GlbParts parts = splitGlb(std::as_bytes(std::span(*mesh.file)), file);
+  const scene::GlbParts parts = scene::splitGlb(std::as_bytes(std::span(*mesh.file)), file);
   const json document = io::parseJson(parts.json, file, kCure);
   const JsonField root(document, file, "", kCure);
   const JsonField version = root["asset"]["version"];
@@ -233,6 +236,6 @@ json materialJson(const PackageMaterial& material) {
   return made;
 }
 
-std::string packageMeshFile(const PackageMesh& mesh) { return joinGlb(mesh.document.dump(), mesh.buffer); }
+std::string packageMeshFile(const PackageMesh& mesh) { return scene::joinGlb(mesh.document.dump(), mesh.buffer); }
 
 }  // namespace facezip::mesh

@@ -13,8 +13,12 @@ constexpr double kFarthest = 1e9;  // of a coordinate, in any unit
 }  // namespace
 
 ScanLandmarks readScanLandmarks(const std::filesystem::path& file) {
-  const nlohmann::json json = io::parseJson(io::readFile(file, "landmarks of the scans", kCure), file.string(), kCure);
-  const JsonField root(json, file.string(), "", kCure);
+  return parseScanLandmarks(io::readFile(file, "landmarks of the scans", kCure), file.string());
+}
+
+ScanLandmarks parseScanLandmarks(const std::string& text, const std::string& name_of_text) {
+  const nlohmann::json json = io::parseJson(text, name_of_text, kCure);
+  const JsonField root(json, name_of_text, "", kCure);
   ScanLandmarks landmarks;
   for (const auto& [scan, points] : root.object().items()) {
     const JsonField of_scan = root[scan];

@@ -16,6 +16,9 @@ using TemplateLandmarks = std::map<std::string, int>;
 /// {"SCAN": {"LANDMARK": [x, y, z], ...}, ...}. Throws InputError naming the field that is wrong.
 ScanLandmarks readScanLandmarks(const std::filesystem::path& file);
 
+/// The same of a text that is at hand. name_of_text  where it came from, for messages
+ScanLandmarks parseScanLandmarks(const std::string& text, const std::string& name_of_text);
+
 /// {"LANDMARK": VERTEX, ...}. vertices  of the template. Throws InputError naming the field that is wrong.
 TemplateLandmarks readTemplateLandmarks(const std::filesystem::path& file, int vertices);
 

@@ -1,9 +1,11 @@
 // register_scans.cpp - from raw scans to a capture, scan by scan: meshes, then textures in the template's layout.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <tbb/parallel_for.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -20,6 +22,7 @@
 #include "register/colour_drift.hpp"
 #include "register/detail_maps.hpp"
 #include "register/mesh_registration.hpp"
+#include "register/registration_picture.hpp"
 #include "register/skin_flow.hpp"
 #include "register/texture_baking.hpp"
 
@@ -34,6 +37,8 @@ constexpr const char* kNormal = "normal";
 constexpr const char* kDisplacement = "displacement";
 constexpr float kHeights = 4.0f;  // millimetres from black to white, as in the built-in capture
 constexpr const char* kConfidence = "confidence";
+constexpr const char* kPictures = "registration";
+constexpr double kShownReach = 3.0;   // millimetres: as far as textures are baked from
 constexpr double kLittleShown = 0.9;  // of what the neutral's scan shows
 
 /// What all scans of a registration share.
@@ -154,6 +159,25 @@ void addFlow(const FlowRounds& rounds, RegisteredScan& report) {
   report.flow_trusted = rounds.after.trusted;
 }
 
+/// Millimetres from each vertex to the scan; NaN where that shows nothing.
+std::vector<float> distancesFrom(const geometry::ScanSurface& scan, const Eigen::MatrixX3d& mesh) {
+  std::vector<float> distances(toSize(mesh.rows()));
+  tbb::parallel_for(Eigen::Index{0}, mesh.rows(), [&](Eigen::Index v) {
+    const geometry::SurfacePoint point = scan.surface().closest(mesh.row(v).transpose(), kShownReach);
+    const bool shown = point.found() && !scan.surface().onBorder(point);
+    distances[toSize(v)] = shown ? static_cast<float>(point.distance) : std::nanf("");
+  });
+  return distances;
+}
+
+/// upright  the mesh as the template stands; mesh: where the scan is
+void writePicture(const Job& job, const FrontView& view, const std::string& name, const Eigen::MatrixX3d& upright,
+                  const Eigen::MatrixX3d& mesh, const PlacedScan& placed, const BakedTexture& texture) {
+  io::createDirectories(job.directory / kPictures);
+  image::writeImage(job.directory / kPictures / (name + ".png"),
+                    pictureOf(view, job.source.neutral, upright, distancesFrom(placed.surface, mesh), texture));
+}
+
 /// The neutral, its texture without holes, and what they are judged by.
 struct Neutral {
   RegisteredSubject subject;
@@ -161,6 +185,7 @@ struct Neutral {
   std::vector<int> region;
   std::vector<bool> texels;
   std::unique_ptr<SkinFlow> flow;  ///< null without it
+  FrontView view;
 };
 
 PlacedScan place(const Job& job, const fs::path& file, const geometry::TriangleMesh& mesh) {
@@ -177,7 +202,7 @@ Neutral registerNeutralScan(Job& job, RegistrationReport& report) {
   const PlacedScan placed = place(job, job.folder.neutral, job.source.neutral);
   job.template_unit = unitOfTemplate(job.source, placed);
   Neutral neutral{
-      registerNeutral(job.source, job.template_unit, placed, job.options.last_step, job.progress), {}, {}, {}, {}};
+      registerNeutral(job.source, job.template_unit, placed, job.options.last_step, job.progress), {}, {}, {}, {}, {}};
   const RegisteredSubject& subject = neutral.subject;
   const Eigen::MatrixX3d mesh = subject.motion.apply(subject.neutral);
   neutral.texture = bake(job, mesh, placed);
@@ -191,6 +216,8 @@ Neutral registerNeutralScan(Job& job, RegistrationReport& report) {
   writeMesh(job, job.directory / "neutral.obj", subject.neutral);
   writeTexture(job.directory / kMap, "neutral", neutral.texture);
   writeDetail(job, "neutral", mesh, placed);
+  neutral.view = frontOf(job.source.neutral, subject.neutral, neutral.region);
+  writePicture(job, neutral.view, "neutral", subject.neutral, mesh, placed, neutral.texture);
   if (job.options.last_step >= RegistrationStep::kFlow) {
     neutral.flow =
         std::make_unique<SkinFlow>(subject.surface, job.source.neutral, placed, mesh, job.context, job.progress);
@@ -234,6 +261,7 @@ RegisteredScan registerExpressionScan(const Job& job, const Neutral& neutral, co
   writeMesh(job, job.directory / "expressions" / (report.name + ".obj"), moved);
   writeTexture(job.directory / kMap, report.name, texture);
   writeDetail(job, report.name, expression.mesh, placed);
+  writePicture(job, neutral.view, report.name, moved, expression.mesh, placed, texture);
   return report;
 }
 
@@ -258,7 +286,8 @@ void writeManifest(const Job& job, const RegistrationReport& report, const std::
 }
 
 std::vector<fs::path> everyFile(const fs::path&) {
-  return {kManifest, "neutral.obj", "expressions", "face_region.txt", kMap, kNormal, kDisplacement, kConfidence};
+  return {kManifest, "neutral.obj", "expressions", "face_region.txt", kMap,
+          kNormal,   kDisplacement, kConfidence,   kPictures};
 }
 
 }  // namespace

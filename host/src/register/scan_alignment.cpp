@@ -100,8 +100,7 @@ PlacedScan placeScan(const std::filesystem::path& file, double millimetres_per_u
   requireEnough(found, scan.name, landmark_file.string(), progress);
   if (isInsideOut(scan, found.kept, surface, mesh)) {
     progress.note(fmt::format("{}: triangles face inwards; they are turned about", scan.name));
-    scan.mesh.triangles.col(1).swap(scan.mesh.triangles.col(2));
-    scan.mesh.uv_triangles.col(1).swap(scan.mesh.uv_triangles.col(2));
+    turnAbout(scan);
     surface = geometry::ScanSurface(scan.mesh.positions, scan.mesh.triangles);
   }
   return {std::move(scan), std::move(surface), std::move(found.kept)};

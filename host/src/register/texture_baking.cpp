@@ -54,6 +54,15 @@ double texelsOfSkin(const Scan& scan, const geometry::ScanSurface& surface, std:
          });
 }
 
+/// Coloured vertices on a square millimetre of skin.
+double verticesOfSkin(const Scan& scan, const geometry::ScanSurface& surface) {
+  double skin = 0.0;
+  for (Eigen::Index t = 0; t < scan.mesh.triangles.rows(); ++t) {
+    skin += geometry::triangleArea(surface.judged().positions, scan.mesh.triangles, t);
+  }
+  return skin > 0.0 ? static_cast<double>(scan.mesh.positions.rows()) / skin : 0.0;
+}
+
 /// Coordinates beyond 0 to 1 repeat the texture.
 double wrapped(double coordinate) {
   return coordinate < 0.0 || coordinate > 1.0 ? coordinate - std::floor(coordinate) : coordinate;
@@ -128,7 +137,19 @@ std::vector<float> ScanTextures::placesOf(std::span<const SeenTexel> seen, const
   return places;
 }
 
+void ScanTextures::sampleColours(std::span<const SeenTexel> seen, std::span<float> samples) const {
+  tbb::parallel_for(std::size_t{0}, seen.size(), [&](std::size_t i) {
+    const SeenTexel& texel = seen[i];
+    if (texel.triangle < 0) return;
+    const Eigen::RowVector3f weights(texel.b0, texel.b1, 1.0f - texel.b0 - texel.b1);
+    const Eigen::RowVector3i corners = scan_.colour_triangles.row(texel.triangle);
+    const Eigen::RowVector3f colour = weights * scan_.colours(corners, Eigen::all);
+    std::copy_n(colour.data(), 3, samples.begin() + static_cast<std::ptrdiff_t>(3 * i));
+  });
+}
+
 void ScanTextures::sample(std::span<const SeenTexel> seen, std::span<float> samples) {
+  if (scan_.isPainted()) return sampleColours(seen, samples);
   for (Source& source : sources_) source.sampler.sample(placesOf(seen, source), samples);
   const float scale = image::unit255(type()) / 255.0f;
   const auto stride = toSize(channels());
@@ -145,6 +166,7 @@ double layoutSideOf(const geometry::TriangleMesh& mesh, const Eigen::MatrixX3d& 
     if (scan.textures[m].empty()) continue;
     texels = std::max(texels, texelsOfSkin(scan, surface, m, image::ImageReader(scan.textures[m]).shape()));
   }
+  if (scan.isPainted()) texels = verticesOfSkin(scan, surface);
   const double plane = planeOfLayout(mesh, positions);
   return plane > 0.0 ? std::sqrt(texels / plane) : 0.0;
 }

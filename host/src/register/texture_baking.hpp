@@ -40,7 +40,8 @@ std::vector<SeenTexel> seenTexels(const raster::UvRaster& raster, const Eigen::M
                                   const Eigen::MatrixX3d& positions, const geometry::ScanSurface& scan, int begin,
                                   int end);
 
-/// A scan's textures on the device, averaged down to about what the layout can hold.
+/// A scan's textures on the device, averaged down to about what the layout can hold; or the colours of its vertices,
+/// linear between them.
 class ScanTextures {
  public:
   /// positions  of the registered mesh, or near it
@@ -49,8 +50,10 @@ class ScanTextures {
   ScanTextures(const geometry::TriangleMesh& mesh, const Eigen::MatrixX3d& positions, int side, const Scan& scan,
                const geometry::ScanSurface& surface, device::DeviceContext& context);
 
-  int channels() const { return sources_.front().sampler.shape().channels; }
-  image::SampleType type() const { return sources_.front().sampler.shape().type; }
+  int channels() const { return sources_.empty() ? 3 : sources_.front().sampler.shape().channels; }
+  image::SampleType type() const {
+    return sources_.empty() ? image::SampleType::kUint8 : sources_.front().sampler.shape().type;
+  }
   /// samples  channels() a texel, 1 at full scale; those of texels without a triangle stay as they are
   void sample(std::span<const SeenTexel> seen, std::span<float> samples);
 
@@ -62,12 +65,14 @@ class ScanTextures {
     TextureSampler sampler;
   };
   std::vector<float> placesOf(std::span<const SeenTexel> seen, const Source& source) const;
+  void sampleColours(std::span<const SeenTexel> seen, std::span<float> samples) const;
 
   const Scan& scan_;
   std::vector<Source> sources_;
 };
 
-/// The side at which a layout holds all that the scan's textures do: texels of both are of one size on the skin.
+/// The side at which a layout holds all that the scan's textures do: texels of both are of one size on the skin. Of
+/// coloured vertices, each is a texel.
 double layoutSideOf(const geometry::TriangleMesh& mesh, const Eigen::MatrixX3d& positions, const Scan& scan,
                     const geometry::ScanSurface& surface);
 

@@ -14,6 +14,7 @@
 #include "io/base64.hpp"
 #include "io/json_field.hpp"
 #include "io/read_file.hpp"
+#include "io/safe_names.hpp"
 #include "io/scratch_directory.hpp"
 #include "package/guides.hpp"
 #include "package/package_files.hpp"
@@ -28,6 +29,8 @@ namespace {
 using nlohmann::json;
 
 constexpr int kLargestThumbnail = 512;
+constexpr int kLargestPicture = 4096;
+constexpr std::size_t kMostScans = 65536;
 
 /// Pictures as data URIs. PNG: what JPEG adds would be taken for what the package lost.
 class Pictures {
@@ -153,6 +156,28 @@ json picturesJson(const Package& package, const Evaluation& evaluation, const Pi
   return images;
 }
 
+/// What was found of each scan, and its picture where there is one.
+json registrationJson(const HtmlReportOptions& options, const Pictures& pictures) {
+  if (options.registration_json.empty()) return nullptr;
+  json registration = json::parse(options.registration_json);
+  for (json& scan : registration["scans"]) {
+    const std::string name = scan["name"];
+    const fs::path file = options.capture / "registration" / (name + ".png");
+    std::error_code error;
+    if (io::nameFault(name) || !fs::exists(file, error)) continue;
+    image::ImageReader reader(file);
+    const image::ImageShape& shape = reader.shape();
+    if (shape.channels != 3 || shape.type != SampleType::kUint8 || shape.width > kLargestPicture ||
+        shape.height > kLargestPicture) {
+      throw InputError({file.string(), "",
+                        fmt::format("an 8-bit RGB picture of at most {} pixels a side", kLargestPicture), "another",
+                        "register the scans again"});
+    }
+    scan["picture"] = pictures.uri(image::readImage(std::move(reader)));
+  }
+  return registration;
+}
+
 json searchJson(const Evaluation& evaluation) {
   if (!evaluation.search) return nullptr;
   json search = {{"cost", evaluation.search->cost}, {"convergence", evaluation.search->convergence}};
@@ -180,14 +205,26 @@ std::string forScript(const json& data) {
   return escaped;
 }
 
-}  // namespace
-
-std::string readCompressReport(const fs::path& file) {
-  const std::string expected = "what `facezip compress --report` wrote";
+/// The text of a report of this kind, as its command wrote it.
+std::string readReport(const fs::path& file, const std::string& kind) {
+  const std::string expected = fmt::format("what `facezip {} --report` wrote", kind);
   std::string text = io::readFile(file, expected);
   const json report = io::parseJson(text, file.string());
-  if (report.is_object() && report.value("facezip_report", json()) == "compress") return text;
+  if (report.is_object() && report.value("facezip_report", json()) == kind) return text;
   throw InputError({file.string(), "", expected, "something else", ""});
+}
+
+}  // namespace
+
+std::string readCompressReport(const fs::path& file) { return readReport(file, "compress"); }
+
+std::string readRegistrationReport(const fs::path& file) {
+  std::string text = readReport(file, "register");
+  const json report = io::parseJson(text, file.string());
+  for (const io::JsonField& scan : io::JsonField(report, file.string(), "")["scans"].elements(1, kMostScans)) {
+    scan["name"].text();
+  }
+  return text;
 }
 
 void writeHtmlReport(const fs::path& file, const Package& package, const Evaluation& evaluation,
@@ -198,6 +235,7 @@ void writeHtmlReport(const fs::path& file, const Package& package, const Evaluat
                {"package", json::parse(package::packageJson(package.description()))},
                {"device", options.device},
                {"compress", options.compress_json.empty() ? json() : json::parse(options.compress_json)},
+               {"registration", registrationJson(options, pictures)},
                {"titles", titlesJson()},
                {"search", searchJson(evaluation)},
                {"sweep", json::array()},

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "capture/capture_meshes.hpp"
 #include "face/face.hpp"
 #include "facezip/geometry/float_origin.hpp"
 #include "facezip/geometry/obj_io.hpp"
@@ -102,9 +103,8 @@ std::string neutralOf(const std::vector<PackageMap>& maps, mesh::MapRole role) {
 
 RigSubject readSubject(const Capture& capture, const RigOptions& options, Progress& progress) {
   RigSubject subject;
-  subject.neutral = geometry::readObj(capture.neutral_mesh);
-  subject.expressions =
-      compress::readExpressionMeshes(capture, subject.neutral, "its mesh, to fit the rig to", progress);
+  subject.neutral = CaptureMeshes(capture).neutral();
+  subject.expressions = compress::readExpressionMeshes(capture, "its mesh, to fit the rig to", progress);
   subject.unit = unitOf(capture, options, subject.neutral, progress);
   return subject;
 }

@@ -14,6 +14,7 @@
 #include "io/composed.hpp"
 #include "io/quoted.hpp"
 #include "io/safe_names.hpp"
+#include "scene/morph_mesh.hpp"
 
 namespace facezip::rig {
 namespace fs = std::filesystem;
@@ -98,9 +99,29 @@ void noteFiles(const fs::path& directory, const TemplateFiles& files, std::size_
   }
 }
 
+/// A template whose shapes are morph targets of one file.
+RigTemplate fromMorphs(const fs::path& file, Progress& progress) {
+  scene::MorphMesh morphs = scene::readMorphMesh(file, "");
+  if (!morphs.note.empty()) progress.note(morphs.note);
+  RigTemplate found;
+  found.neutral_file = file;
+  found.neutral = std::move(morphs.neutral);
+  for (auto& [name, positions] : morphs.positions) {
+    requireName(name, file);
+    found.names.push_back(name);
+    found.shapes.push_back(std::move(positions));
+  }
+  if (!found.names.empty()) return found;
+  throw InputError({file.string(), "template", "morph targets, the shapes", "none", ""});
+}
+
 }  // namespace
 
 RigTemplate readTemplate(const fs::path& directory, Progress& progress) {
+  if (templateFiles(directory).empty()) {
+    const fs::path file = scene::sceneFileIn(directory, "remove one");
+    if (!file.empty()) return fromMorphs(file, progress);
+  }
   const TemplateFiles files = sortFiles(directory);
   RigTemplate found;
   found.neutral_file = files.neutral;

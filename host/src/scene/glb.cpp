@@ -1,4 +1,4 @@
-#include "mesh/glb.hpp"
+#include "scene/glb.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 
 #include "facezip/error.hpp"
 
-namespace facezip::mesh {
+namespace facezip::scene {
 namespace {
 
 constexpr std::size_t kWord = 4;
@@ -46,7 +46,7 @@ std::optional<std::span<const std::byte>> takeChunk(std::span<const std::byte>& 
 GlbParts splitGlb(std::span<const std::byte> bytes, const std::string& file) {
   const auto fail = [&](const std::string& got) {
     throw InputError(
-        {file, "", "a whole binary glTF 2.0 file", got, "the file is truncated or damaged: write the package again"});
+        {file, "", "a whole binary glTF 2.0 file", got, "the file is truncated or damaged: write it again"});
   };
   const bool named = bytes.size() >= kHeaderBytes && wordAt(bytes, 0) == kMagic && wordAt(bytes, kWord) == kVersion &&
                      wordAt(bytes, 2 * kWord) == bytes.size();
@@ -78,4 +78,4 @@ std::string joinGlb(std::string json, std::span<const std::byte> binary) {
   return glb;
 }
 
-}  // namespace facezip::mesh
+}  // namespace facezip::scene

@@ -11,7 +11,7 @@
 
 #include "io/json_field.hpp"
 
-namespace facezip::mesh {
+namespace facezip::scene {
 
 /// glTF's names for types of numbers.
 enum ComponentType : int { kUnsignedByte = 5121, kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126 };
@@ -31,19 +31,32 @@ struct Elements {
   std::size_t index(std::size_t element, int component_type) const;
 };
 
+/// Elements that stand elsewhere than the others.
+struct SparseElements {
+  std::size_t count = 0;
+  int index_type = 0;
+  Elements indices;  ///< rising, in range
+  Elements values;
+};
+
 struct Accessor {
   int component_type = 0;
   int components = 0;
   std::size_t count = 0;
-  bool sparse = false;
+  std::optional<SparseElements> sparse;
   std::optional<Elements> elements;  ///< zeros where there are none
 };
+
+/// What accessors of matrices and of signed integers are, which meshes have no use for (bones and animations have).
+enum class OtherNumbers { kRefused, kLeftOut };
 
 /// Every accessor of a file. Ranges, alignment, sparse indices and floats, which must be finite, were checked.
 class GltfAccessors {
  public:
-  /// root  the document; buffer  the bytes of its one buffer. Throws InputError naming the field.
-  GltfAccessors(const io::JsonField& root, std::span<const std::byte> buffer);
+  /// root  the document; buffer  the bytes of its one buffer; others  left out, they have no elements and no components
+  /// Throws InputError naming the field.
+  GltfAccessors(const io::JsonField& root, std::span<const std::byte> buffer,
+                OtherNumbers others = OtherNumbers::kRefused);
 
   std::size_t size() const { return accessors_.size(); }
   const Accessor& operator[](std::size_t index) const { return accessors_[index]; }
@@ -62,7 +75,7 @@ class GltfAccessors {
   };
   void readView(const io::JsonField& field, std::span<const std::byte> buffer);
   void readAccessor(const io::JsonField& field);
-  void readSparse(const io::JsonField& field, const Accessor& accessor, nlohmann::json& json);
+  SparseElements readSparse(const io::JsonField& field, const Accessor& accessor, nlohmann::json& json);
   Elements elementsOf(const io::JsonField& field, int component_type, int components, std::size_t count);
 
   std::size_t bytes_left_;  ///< of the buffer: accessors over the same bytes could go on for ever
@@ -72,4 +85,4 @@ class GltfAccessors {
   nlohmann::json accessors_json_ = nlohmann::json::array();
 };
 
-}  // namespace facezip::mesh
+}  // namespace facezip::scene

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-namespace facezip::mesh {
+namespace facezip::scene {
 
 struct GlbParts {
   std::string json;
@@ -21,4 +21,4 @@ GlbParts splitGlb(std::span<const std::byte> bytes, const std::string& file);
 /// Puts one together. json and binary are of at most 2^31 bytes together.
 std::string joinGlb(std::string json, std::span<const std::byte> binary);
 
-}  // namespace facezip::mesh
+}  // namespace facezip::scene

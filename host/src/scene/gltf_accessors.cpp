@@ -1,4 +1,4 @@
-#include "mesh/gltf_accessors.hpp"
+#include "scene/gltf_accessors.hpp"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "io/counts.hpp"
 #include "io/quoted.hpp"
 
-namespace facezip::mesh {
+namespace facezip::scene {
 namespace {
 using io::JsonField;
 using nlohmann::json;
@@ -24,6 +24,7 @@ constexpr int kLargest = std::numeric_limits<int>::max();
 constexpr std::size_t kMostViews = std::size_t{1} << 18;
 constexpr std::size_t kMostAccessors = std::size_t{1} << 17;
 constexpr int kLargestStride = 252;  // of glTF
+constexpr int kByte = 5120, kShort = 5122;
 
 int most(std::size_t bytes) { return static_cast<int>(std::min(bytes, toSize(kLargest))); }
 
@@ -39,6 +40,12 @@ int componentsOf(const JsonField& type) {
     if (kNames[n] == name) return static_cast<int>(n) + 1;
   }
   type.fail("SCALAR, VEC2, VEC3 or VEC4", io::quoted(name));
+}
+
+/// Of matrices, bytes or shorts.
+bool isOther(const JsonField& accessor) {
+  const int component_type = accessor["componentType"].integer(kByte, kFloat);
+  return accessor["type"].text().starts_with("MAT") || component_type == kByte || component_type == kShort;
 }
 
 int optionalInteger(const JsonField& object, const char* key, int least, int largest, int otherwise) {
@@ -69,9 +76,15 @@ std::size_t Elements::index(std::size_t element, int component_type) const {
   return component_type == kUnsignedShort ? at<std::uint16_t>(element) : at<std::uint32_t>(element);
 }
 
-GltfAccessors::GltfAccessors(const JsonField& root, Bytes buffer) : bytes_left_(buffer.size()) {
+GltfAccessors::GltfAccessors(const JsonField& root, Bytes buffer, OtherNumbers others) : bytes_left_(buffer.size()) {
   for (const JsonField& view : root["bufferViews"].elements(1, kMostViews)) readView(view, buffer);
-  for (const JsonField& accessor : root["accessors"].elements(1, kMostAccessors)) readAccessor(accessor);
+  for (const JsonField& accessor : root["accessors"].elements(1, kMostAccessors)) {
+    if (others == OtherNumbers::kLeftOut && isOther(accessor)) {
+      accessors_.emplace_back();
+    } else {
+      readAccessor(accessor);
+    }
+  }
 }
 
 const Accessor& GltfAccessors::at(const JsonField& reference) const {
@@ -128,13 +141,12 @@ void GltfAccessors::readAccessor(const JsonField& field) {
   for (const char* bound : {"min", "max"}) {
     if (field.has(bound)) clean[bound] = boundsJson(field[bound], accessor.components);
   }
-  accessor.sparse = field.has("sparse");
-  if (accessor.sparse) readSparse(field["sparse"], accessor, clean["sparse"]);
+  if (field.has("sparse")) accessor.sparse = readSparse(field["sparse"], accessor, clean["sparse"]);
   accessors_.push_back(std::move(accessor));
   accessors_json_.push_back(std::move(clean));
 }
 
-void GltfAccessors::readSparse(const JsonField& field, const Accessor& accessor, json& clean) {
+SparseElements GltfAccessors::readSparse(const JsonField& field, const Accessor& accessor, json& clean) {
   const std::size_t count = toSize(field["count"].integer(1, most(accessor.count)));
   const JsonField indices = field["indices"], values = field["values"];
   const int index_type =
@@ -153,6 +165,7 @@ void GltfAccessors::readSparse(const JsonField& field, const Accessor& accessor,
   };
   clean = {{"count", count}, {"indices", place(indices)}, {"values", place(values)}};
   clean["indices"]["componentType"] = index_type;
+  return {count, index_type, at, replacing};
 }
 
-}  // namespace facezip::mesh
+}  // namespace facezip::scene

@@ -15,17 +15,22 @@ std::vector<BlockFormat> formatChoice(const std::string& name) {
 
 void parseTextureFormat(const std::string& name, CompressOptions& options) {
   options.format_choice = formatChoice(name);
-  if (name == "png" || !options.format_choice.empty()) return;
-  try {
-    options.texture_format = blockFormatOf(name, "--texture-format");
-  } catch (const InputError& error) {
-    InputError::Parts parts = error.parts();
-    parts.expected = "png, or bc or astc with a budget or target, or " + parts.expected;
-    throw InputError(parts);
-  }
+  if (!options.format_choice.empty()) return;
+  options.texture_format = parseBlockFormat(name, "bc or astc with a budget or target, or ");
 }
 
 }  // namespace
+
+std::optional<BlockFormat> parseBlockFormat(const std::string& name, const std::string& also) {
+  if (name == "png") return std::nullopt;
+  try {
+    return blockFormatOf(name, "--texture-format");
+  } catch (const InputError& error) {
+    InputError::Parts parts = error.parts();
+    parts.expected = "png, or " + also + parts.expected;
+    throw InputError(parts);
+  }
+}
 
 void addPackageOutputOption(CLI::App& command, std::string& output) {
   command.add_option("-o,--output", output, "Directory of the package; an earlier package there is replaced")

@@ -28,6 +28,9 @@ void addMapsOption(CLI::App& command, std::vector<std::string>& maps, const std:
 /// The maps of a package, to open its capture with: other folders of that do not matter then.
 std::vector<std::string> mapNames(const Package& package);
 
+/// The value of --texture-format: none for "png". Throws InputError. also  further names, for the message
+std::optional<BlockFormat> parseBlockFormat(const std::string& name, const std::string& also = "");
+
 /// The texts behind CompressOptions, before they are parsed.
 struct CompressArguments {
   std::string method = "refined";

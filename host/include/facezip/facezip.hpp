@@ -7,6 +7,7 @@
 #include "facezip/capture.hpp"
 #include "facezip/check.hpp"
 #include "facezip/compress.hpp"
+#include "facezip/convert.hpp"
 #include "facezip/device.hpp"
 #include "facezip/evaluate.hpp"
 #include "facezip/export.hpp"

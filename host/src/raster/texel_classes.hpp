@@ -15,6 +15,8 @@ namespace facezip::raster {
 /// Two bits for each texel of a raster.
 class TexelClasses {
  public:
+  /// Of an image that shows nothing yet.
+  TexelClasses(int width, int height);
   /// Of the whole image.
   explicit TexelClasses(const UvRaster& raster);
   /// Of rows [begin, end) as a whole of their own, without the gutter.
@@ -29,8 +31,13 @@ class TexelClasses {
   /// The same, covered alone.
   std::uint32_t covered(int tile_x, int y) const { return words_[index(tile_x, y)] >> 16; }
 
+  /// Marks texels of row y in column `tile_x` of tiles, the leftmost in the lowest bit; those that are covered are
+  /// active, too. Rows may be marked side by side.
+  void mark(int tile_x, int y, std::uint32_t active, std::uint32_t covered) {
+    words_[index(tile_x, y)] |= (active | covered) | covered << 16;
+  }
+
  private:
-  TexelClasses(int width, int height);
   /// Takes over whole rows of samples, the first as row `y`.
   void set(const std::vector<TexelSample>& samples, int y);
   std::size_t index(int tile_x, int y) const { return toSize(y, tile_columns_) + toSize(tile_x); }

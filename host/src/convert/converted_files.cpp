@@ -1,0 +1,206 @@
+#include "convert/converted_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "bands/map_bands.hpp"
+#include "compress/package_output.hpp"
+#include "facezip/rig.hpp"
+#include "io/file_pieces.hpp"
+#include "io/json_field.hpp"
+#include "io/write_file.hpp"
+#include "package/guides.hpp"
+#include "package/package_files.hpp"
+#include "package/package_textures.hpp"
+#include "package/package_writer.hpp"
+#include "rig/rig_json.hpp"
+
+namespace facezip::convert {
+namespace fs = std::filesystem;
+namespace {
+using compress::BlockTextures;
+using nlohmann::json;
+
+constexpr int kRowsAtOnce = 64;
+
+void copyFile(const Package& package, const std::string& name, const fs::path& to) {
+  const InputFile file = package.folder().open(name, "a file of the package");
+  std::ofstream out(to, std::ios::binary);
+  io::forEachPiece(file, (package.directory() / name).string(), std::size_t{1} << 20,
+                   [&](std::string_view piece) { out << piece; });
+  out.close();
+  if (!out) throw OutputError(to, "could not be written", "is the disk full?");
+}
+
+/// How the package was made, with the formats it has now: `evaluate` makes its baselines by it.
+std::string methodOf(const PackageDescription& description) {
+  json record = json::parse(description.method_json);
+  record.erase("texture_format");
+  record.erase("difference_format");
+  for (const PackageMap& map : description.maps) {
+    if (!map.neutral_format || record.contains("texture_format")) continue;
+    record["texture_format"] = blockFormatName(*map.neutral_format);
+    record["difference_format"] = blockFormatName(*map.differences.front().format);
+  }
+  return record.dump();
+}
+
+void describeBlocks(const ConvertedSet& set, std::size_t i, PackageMap& map) {
+  map.neutral_format = set.neutrals[i].format;
+  map.difference_bits = 8;
+  const auto channels = toSize(map.channels);
+  for (std::size_t d = 0; d < map.differences.size(); ++d) {
+    PackageDifference& difference = map.differences[d];
+    difference.format = set.codes[i].formats[d];
+    for (std::size_t c = 0; c < channels; ++c) {
+      const compress::TextureEncoding& e = set.codes[i].encoding[d * channels + c];
+      difference.scale[c] = e.scale;
+      difference.offset[c] = e.offset;
+    }
+  }
+}
+
+void describeImages(PackageMap& map) {
+  map.neutral_format.reset();
+  for (PackageDifference& difference : map.differences) difference.format.reset();
+}
+
+PackageDescription describe(const Package& package, std::span<const std::unique_ptr<ConvertedSet>> sets) {
+  PackageDescription description = package.description();
+  if (!description.mesh_file.empty()) description.mesh_file = package::kMeshFile;
+  if (description.masks) description.masks->file = package::kMasksFile;
+  if (sets.empty()) {
+    for (PackageMap& map : description.maps) describeImages(map);
+  }
+  for (std::size_t s = 0; s < sets.size(); ++s) {
+    description.weights[s].scale = sets[s]->weights.scale;
+    description.weights[s].offset = sets[s]->weights.offset;
+    for (std::size_t i = 0; i < sets[s]->indices.size(); ++i) {
+      describeBlocks(*sets[s], i, description.maps[toSize(sets[s]->indices[i])]);
+    }
+  }
+  description.method_json = methodOf(description);
+  return description;
+}
+
+/// Samples of 16 bits as the nearest of 8.
+std::vector<std::byte> wholeCodes(std::span<const std::byte> wide) {
+  std::vector<std::byte> codes(wide.size() / 2);
+  for (std::size_t s = 0; s < codes.size(); ++s) {
+    std::uint16_t sample = 0;
+    std::memcpy(&sample, &wide[2 * s], sizeof(sample));
+    codes[s] = static_cast<std::byte>((sample + 128u) / 257u);
+  }
+  return codes;
+}
+
+/// A texture as the image that it is, or that its blocks decode to.
+template <typename Write>
+void copyTexture(const Package& package, const package::StoredTexture& texture, const Write& write) {
+  package::TextureReader reader(package.folder(), texture);
+  const image::ImageShape& shape = reader.shape();
+  const bool rounds = texture.format && shape.type == SampleType::kUint16;
+  std::vector<std::byte> rows;
+  for (int begin = 0; begin < shape.height; begin += kRowsAtOnce) {
+    const int end = std::min(begin + kRowsAtOnce, shape.height);
+    rows.resize(toSize(end - begin) * shape.rowBytes());
+    reader.readRows(begin, end, rows);
+    if (rounds) {
+      write(wholeCodes(rows), end - begin);
+    } else {
+      write(rows, end - begin);
+    }
+  }
+}
+
+void writeImages(const Package& package, int index, package::PackageWriter& writer, Progress& progress) {
+  const PackageMap& map = package.maps()[toSize(index)];
+  progress.checkCancelled();
+  copyTexture(package, package::neutralTexture(map),
+              [&](std::span<const std::byte> rows, int count) { writer.writeNeutralRows(index, rows, count); });
+  for (int i = 0; i < package.differences(); ++i) {
+    progress.checkCancelled();
+    copyTexture(package, package::differenceTexture(map, i),
+                [&](std::span<const std::byte> rows, int count) { writer.writeDifferenceRows(index, i, rows, count); });
+  }
+}
+
+void writeBlocks(const ConvertedSet& set, std::size_t i, const PackageMap& described, const fs::path& directory,
+                 const device::Run& run) {
+  compress::MapSolution solution;
+  solution.map = set.group[i];
+  solution.codes = set.codes[i];
+  solution.neutral = &set.neutrals[i];
+  solution.block_textures =
+      std::make_unique<BlockTextures>(run.context, set.space, set.weights, solution.codes, described.channels);
+  compress::BandBuffers buffers(run.context);
+  compress::writeBlockMap(solution, described, directory, set.band_rows, buffers, run);
+}
+
+/// rig.gltf shows neutrals that may be no images any more: glTF knows no blocks.
+std::string withoutTextures(std::string text, const std::string& file) {
+  json scene = io::parseJson(text, file);
+  for (const char* key : {"images", "textures", "samplers"}) scene.erase(key);
+  if (!scene.contains("materials")) return scene.dump();
+  for (json& material : scene["materials"]) {
+    material.erase("normalTexture");
+    if (material.contains("pbrMetallicRoughness")) material["pbrMetallicRoughness"].erase("baseColorTexture");
+  }
+  return scene.dump();
+}
+
+void copyRig(const Package& package, bool keeps_images, const fs::path& directory, Progress& progress) {
+  if (!isRig(package)) return;
+  const Rig rig = openRig(package);
+  copyFile(package, rig::kRigFile, directory / rig::kRigFile);
+  copyFile(package, "rig.bin", directory / "rig.bin");
+  if (keeps_images) {
+    copyFile(package, "rig.gltf", directory / "rig.gltf");
+  } else {
+    const InputFile file = package.folder().open("rig.gltf", "the rig's scene");
+    const std::string path = (package.directory() / "rig.gltf").string();
+    io::writeTextFile(directory / "rig.gltf", withoutTextures(file.read(rig::kMostRigBytes), path));
+  }
+  io::createDirectories(directory / "shapes");
+  copyFile(package, "shapes/neutral.obj", directory / "shapes/neutral.obj");
+  for (const std::string& shape : rig.shapes) {
+    progress.checkCancelled();
+    copyFile(package, "shapes/" + shape + ".obj", directory / ("shapes/" + shape + ".obj"));
+  }
+}
+
+}  // namespace
+
+void writeConverted(const Package& package, std::span<const std::unique_ptr<ConvertedSet>> sets,
+                    const fs::path& directory, const device::Run& run) {
+  package::PackageWriter writer(describe(package, sets), directory);
+  const PackageDescription& description = writer.description();
+  for (int set = 0; set < static_cast<int>(description.weights.size()); ++set) {
+    const compress::EncodedWeights stored =
+        sets.empty() ? readWeights(package, set) : compress::EncodedWeights{{}, {}, sets[toSize(set)]->weights.codes};
+    writer.writeWeights(set, std::as_bytes(std::span(stored.codes)));
+  }
+  run.progress.stage("writing", 0);
+  for (std::size_t m = 0; m < description.maps.size(); ++m) {
+    if (!description.maps[m].neutral_format) writeImages(package, static_cast<int>(m), writer, run.progress);
+  }
+  for (const auto& set : sets) {
+    for (std::size_t i = 0; i < set->indices.size(); ++i) {
+      writeBlocks(*set, i, description.maps[toSize(set->indices[i])], directory, run);
+    }
+  }
+  if (!description.mesh_file.empty()) {
+    copyFile(package, package.description().mesh_file, directory / description.mesh_file);
+  }
+  if (description.masks) copyFile(package, package.description().masks->file, directory / description.masks->file);
+  copyRig(package, sets.empty(), directory, run.progress);
+  writer.finish();
+  run.clock.book("writing");
+}
+
+}  // namespace facezip::convert

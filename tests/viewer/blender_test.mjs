@@ -80,6 +80,7 @@ function withFewerChannels(packagePath, map, channels) {
 }
 
 checkExport(join(packages, 'head'), join(work, 'head'));
+checkExport(join(packages, 'bc7'), join(work, 'bc7'));
 
 const variant = join(work, 'variant_package');
 cpSync(join(packages, 'head'), variant, { recursive: true });

@@ -75,6 +75,15 @@ void requireChannels(BlockFormat format, int channels) {
 
 namespace facezip {
 
+BlockSize blockSize(BlockFormat format) {
+  const blocks::BlockFormatInfo& info = blocks::infoOf(format);
+  return {info.block_width, info.block_height, info.block_bytes};
+}
+
+std::uint64_t blockTextureBytes(BlockFormat format, int width, int height) {
+  return blocks::blockBytes(format, width, height);
+}
+
 std::string_view blockFormatName(BlockFormat format) { return blocks::infoOf(format).name; }
 
 BlockFormat blockFormatOf(std::string_view name, std::string_view option) {

@@ -38,11 +38,7 @@ bool refitsWeights(const Package& package) {
 }
 
 void requireOneInBlocks(const Package& package) {
-  const bool any = std::ranges::any_of(package.maps(), [](const PackageMap& map) {
-    return map.neutral_format ||
-           std::ranges::any_of(map.differences, [](const PackageDifference& d) { return d.format.has_value(); });
-  });
-  if (any) return;
+  if (std::ranges::any_of(package.maps(), package::hasBlocks)) return;
   throw InputError({package.directory().string(), "textures", "some in blocks, for --texture-format png",
                     "images alone", "take a block format: " + blockFormatNames()});
 }
@@ -132,7 +128,12 @@ ConvertReport convertPackage(const Package& package, const fs::path& output, con
     sets.push_back(convertSet({package, device, *formats, refitsWeights(package), mesh, weights, run}, set, kept));
     kept += sets.back()->neutralBytes() + sets.back()->weights.codes.size();
   }
-  writeConverted(package, sets, staged.path(), run);
+  if (formats) {
+    writeConverted(package, sets, staged.path(), run);
+  } else {
+    writeAsImages(package, staged.path(), progress);
+  }
+  clock.book("writing");
 
   ConvertReport report;
   {

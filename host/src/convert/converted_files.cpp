@@ -4,16 +4,15 @@
 
 #include <algorithm>
 #include <cstring>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "bands/map_bands.hpp"
 #include "compress/package_output.hpp"
 #include "facezip/rig.hpp"
-#include "io/file_pieces.hpp"
 #include "io/json_field.hpp"
 #include "io/write_file.hpp"
+#include "package/file_copy.hpp"
 #include "package/guides.hpp"
 #include "package/package_files.hpp"
 #include "package/package_textures.hpp"
@@ -25,17 +24,9 @@ namespace fs = std::filesystem;
 namespace {
 using compress::BlockTextures;
 using nlohmann::json;
+using package::copyFile;
 
 constexpr int kRowsAtOnce = 64;
-
-void copyFile(const Package& package, const std::string& name, const fs::path& to) {
-  const InputFile file = package.folder().open(name, "a file of the package");
-  std::ofstream out(to, std::ios::binary);
-  io::forEachPiece(file, (package.directory() / name).string(), std::size_t{1} << 20,
-                   [&](std::string_view piece) { out << piece; });
-  out.close();
-  if (!out) throw OutputError(to, "could not be written", "is the disk full?");
-}
 
 /// How the package was made, with the formats it has now: `evaluate` makes its baselines by it.
 std::string methodOf(const PackageDescription& description) {
@@ -176,16 +167,41 @@ void copyRig(const Package& package, bool keeps_images, const fs::path& director
 
 }  // namespace
 
+namespace {
+
+/// What does not depend on the form of textures.
+void copyBeside(const Package& package, const PackageDescription& description, const fs::path& directory) {
+  if (!description.mesh_file.empty()) {
+    copyFile(package, package.description().mesh_file, directory / description.mesh_file);
+  }
+  if (description.masks) copyFile(package, package.description().masks->file, directory / description.masks->file);
+}
+
+}  // namespace
+
+void writeAsImages(const Package& package, const fs::path& directory, Progress& progress) {
+  package::PackageWriter writer(describe(package, {}), directory);
+  progress.stage("writing", 0);
+  for (int set = 0; set < static_cast<int>(package.weightSets().size()); ++set) {
+    const compress::EncodedWeights weights = readWeights(package, set);
+    writer.writeWeights(set, std::as_bytes(std::span(weights.codes)));
+  }
+  for (std::size_t m = 0; m < package.maps().size(); ++m) {
+    writeImages(package, static_cast<int>(m), writer, progress);
+  }
+  copyBeside(package, writer.description(), directory);
+  copyRig(package, true, directory, progress);
+  writer.finish();
+}
+
 void writeConverted(const Package& package, std::span<const std::unique_ptr<ConvertedSet>> sets,
                     const fs::path& directory, const device::Run& run) {
   package::PackageWriter writer(describe(package, sets), directory);
   const PackageDescription& description = writer.description();
-  for (int set = 0; set < static_cast<int>(description.weights.size()); ++set) {
-    const compress::EncodedWeights stored =
-        sets.empty() ? readWeights(package, set) : compress::EncodedWeights{{}, {}, sets[toSize(set)]->weights.codes};
-    writer.writeWeights(set, std::as_bytes(std::span(stored.codes)));
-  }
   run.progress.stage("writing", 0);
+  for (std::size_t set = 0; set < sets.size(); ++set) {
+    writer.writeWeights(static_cast<int>(set), std::as_bytes(std::span(sets[set]->weights.codes)));
+  }
   for (std::size_t m = 0; m < description.maps.size(); ++m) {
     if (!description.maps[m].neutral_format) writeImages(package, static_cast<int>(m), writer, run.progress);
   }
@@ -194,13 +210,9 @@ void writeConverted(const Package& package, std::span<const std::unique_ptr<Conv
       writeBlocks(*set, i, description.maps[toSize(set->indices[i])], directory, run);
     }
   }
-  if (!description.mesh_file.empty()) {
-    copyFile(package, package.description().mesh_file, directory / description.mesh_file);
-  }
-  if (description.masks) copyFile(package, package.description().masks->file, directory / description.masks->file);
-  copyRig(package, sets.empty(), directory, run.progress);
+  copyBeside(package, description, directory);
+  copyRig(package, false, directory, run.progress);
   writer.finish();
-  run.clock.book("writing");
 }
 
 }  // namespace facezip::convert

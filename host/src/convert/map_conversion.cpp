@@ -149,19 +149,10 @@ WeightSpace spaceOf(const Package& package, int set) {
 EncodedWeights readWeights(const Package& package, int set) {
   const PackageWeights& stored = package.weightSets()[toSize(set)];
   EncodedWeights weights{stored.scale, stored.offset, {}};
-  const auto textures = toSize(package.differences());
-  const std::size_t cells = toSize(stored.tile_height, stored.tile_width);
-  weights.codes.resize(package.expressions().size() * cells * textures);
-  package::readWeightAtlas(
-      package.description(), set, package.folder(),
-      [&](int expression, int cell_row, int first_channel, int row_channels, std::span<const std::byte> row) {
-        const std::size_t first = toSize(expression) * cells + toSize(cell_row, stored.tile_width);
-        const auto channels = toSize(row_channels);
-        for (std::size_t b = 0; b < row.size(); ++b) {
-          weights.codes[(first + b / channels) * textures + toSize(first_channel) + b % channels] =
-              static_cast<std::uint8_t>(row[b]);
-        }
-      });
+  weights.codes.resize(package.expressions().size() * toSize(stored.tile_height, stored.tile_width) *
+                       toSize(package.differences()));
+  package::readWeightCodes(package.description(), set, package.folder(),
+                           std::as_writable_bytes(std::span(weights.codes)));
   return weights;
 }
 

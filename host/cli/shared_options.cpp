@@ -116,7 +116,18 @@ void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
                   "Block format of the difference textures, where it is to be another")
       ->type_name("FORMAT")
       ->needs(format);
-  command.add_flag("--weights-per-map", options.weights_per_map, "Give every map weights of its own");
+  CLI::Option* sets =
+      command
+          .add_option(
+              "--weight-sets", arguments.weight_sets,
+              "shared: one set of weights for all maps; per-map: one for each; auto: what errs less by the byte")
+          ->check(CLI::IsMember(allNames<WeightSets>()))
+          ->capture_default_str();
+  command
+      .add_flag_callback(
+          "--weights-per-map", [&arguments] { arguments.weight_sets = nameOf(WeightSets::kPerMap); },
+          "The same as --weight-sets per-map")
+      ->excludes(sets);
   CLI::Option* radius =
       command
           .add_option("--mask-radius", arguments.mask_radius,
@@ -162,6 +173,7 @@ void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
 CompressOptions parseCompressOptions(const CompressArguments& arguments) {
   CompressOptions options = arguments.options;
   options.method = *findNamed<Method>(arguments.method);  // CLI11 has checked it
+  options.weight_sets = *findNamed<WeightSets>(arguments.weight_sets);
   options.permutation_solver = *findNamed<PermutationSolver>(arguments.permutation_solver);
   try {
     options.mask_radius = geometry::parseLength(arguments.mask_radius);

@@ -35,6 +35,7 @@ std::optional<BlockFormat> parseBlockFormat(const std::string& name, const std::
 struct CompressArguments {
   std::string method = "refined";
   std::string permutation_solver = "best";
+  std::string weight_sets = "auto";
   std::string texture_format = "png";
   std::string difference_format;
   std::string mask_radius = "3cm";

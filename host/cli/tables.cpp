@@ -140,8 +140,8 @@ void printRateCurve(const CompressReport& report) {
     say("{:<14}{:<12}{:>12}{:>12}{:>16.3f}{}\n",
         fmt::format("{}{}", point.differences, point.code_bits == 16 ? ", 16-bit" : ""),
         point.difference_format ? blockFormatName(*point.difference_format) : "images",
-        fmt::format("1/{}", point.weight_scale), formatMegabytes(point.bytes), point.rmse,
-        point == report.rate ? "  <- taken" : "");
+        fmt::format("1/{}{}", point.weight_scale, point.weights_per_map ? " a map" : ""), formatMegabytes(point.bytes),
+        point.rmse, point == report.rate ? "  <- taken" : "");
   }
   say("\n");
 }

@@ -114,18 +114,21 @@ TEST_F(Kill, LeavesTheOldOrTheNew) {
     victim.check();
   }
   std::mt19937 random(7);
-  int killed = 0;
-  for (int k = 0; k < kills; ++k) {
+  for (int k = 0, killed = 0; killed < kills; ++k) {
     const std::size_t v = static_cast<std::size_t>(k) % all.size();
     const auto whole = std::chrono::duration_cast<std::chrono::microseconds>(durations[v]);
     // The end, where files are put in place, more often than the work before it.
     const double share = std::max(std::uniform_real_distribution<>(0.0, 1.1)(random),
                                   std::uniform_real_distribution<>(0.0, 1.1)(random));
-    killed += runAndKill(all[v].arguments, std::chrono::microseconds(static_cast<long>(share * whole.count())));
+    const Clock::time_point start = Clock::now();
+    if (runAndKill(all[v].arguments, std::chrono::microseconds(static_cast<long>(share * whole.count())))) {
+      ++killed;
+    } else {  // the machine was busier when the duration was measured
+      durations[v] = std::min(durations[v], Clock::duration(Clock::now() - start));
+    }
     all[v].check();
     if (HasFailure()) FAIL() << "kill " << k;
   }
-  EXPECT_GT(killed, kills / 4);
   for (const Victim& victim : all) ASSERT_FALSE(runAndKill(victim.arguments, std::chrono::seconds(30)));
   for (const std::string& name : test::filesBelow(folder_ / "out")) {
     EXPECT_EQ(name.find(".partial"), std::string::npos) << name << " is left";

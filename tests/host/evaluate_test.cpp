@@ -91,6 +91,7 @@ TEST_F(Evaluating, WeightsPerMapShowWhatSharingThemCosts) {
   CompressOptions compression = smallOptions();
   compression.method = Method::kRefined;
   compression.differences = 3;
+  compression.weight_sets = WeightSets::kShared;
   compressCapture(capture, folder_ / "p", compression, testDevice(), progress_);
   const Package shared = Package::open(folder_ / "p");
   EvaluateOptions options = quickOptions();
@@ -99,7 +100,7 @@ TEST_F(Evaluating, WeightsPerMapShowWhatSharingThemCosts) {
   const Evaluation evaluation = evaluate(shared, options);
   EXPECT_EQ(evaluation.bytes.at("weights-per-map"), evaluation.bytes.at("package") + 8u * 8 * 8 * 3);
 
-  compression.weights_per_map = true;
+  compression.weight_sets = WeightSets::kPerMap;
   compressCapture(capture, folder_ / "own", compression, testDevice(), progress_);
   const Evaluation direct = evaluate(Package::open(folder_ / "own"), options);
   for (std::size_t m = 0; m < 2; ++m) {
@@ -202,6 +203,7 @@ TEST_F(Evaluating, BlendOfOneExpressionIsItsErrorScaled) {
 TEST_F(Evaluating, AblationHasEveryMethodAtEveryNumberOfTextures) {
   CompressOptions compression = smallOptions();
   compression.differences = 3;
+  compression.weight_sets = WeightSets::kShared;
   const Package package = compress({.expressions = 6, .maps = {"albedo", "normal"}}, compression);
   EvaluateOptions options = quickOptions();
   options.ablation = true;

@@ -56,9 +56,11 @@ TEST_P(MippedTextureWriterTest, LevelsAreMeansOfWhatTheBlocksDecodeTo) {
         return whole[static_cast<std::size_t>(((2 * y + j) * kWidth + 2 * x + i) * 3)];
       };
       const float mean = (at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1)) / 4.0f;
-      // The last of an odd number of rows has a share, too; what a smooth picture loses in blocks is small, but for BC1,
-      // whose ends of 5 bits do not follow three channels apart.
-      EXPECT_NEAR(half[static_cast<std::size_t>((y * (kWidth / 2) + x) * 3)], mean, GetParam() == BlockFormat::kBc1 ? 20.0f : 6.0f) << x << " " << y;
+      // The last of an odd number of rows has a share, too; what a smooth picture loses in blocks is small, but for
+      // BC1, whose ends of 5 bits do not follow three channels apart.
+      EXPECT_NEAR(half[static_cast<std::size_t>((y * (kWidth / 2) + x) * 3)], mean,
+                  GetParam() == BlockFormat::kBc1 ? 20.0f : 6.0f)
+          << x << " " << y;
     }
   }
 }

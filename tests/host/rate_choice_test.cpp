@@ -145,6 +145,28 @@ TEST(CodingNoise, FallsWithTheBitsOfATexel) {
 
 RatePoint point(std::uint64_t bytes, double rmse) { return {1, 8, 8, std::nullopt, std::nullopt, bytes, rmse}; }
 
+TEST(OwnWeights, PayWhereTheyBeatTheSameBytesOfTextures) {
+  const auto with = [](int differences, bool own, std::uint64_t bytes, double rmse) {
+    RatePoint one = point(bytes, rmse);
+    one.differences = differences;
+    one.weights_per_map = own;
+    return one;
+  };
+  // 100 bytes more take the error of shared weights from 4 to 1; 50 of them would take it to 2.
+  std::vector<RatePoint> curve = {with(3, false, 200, 8.0), with(4, false, 300, 4.0), with(5, false, 400, 1.0),
+                                  with(4, true, 350, 1.9)};
+  EXPECT_TRUE(compress::ownWeightsPay(curve, 4));
+  curve.back().rmse = 2.1;
+  EXPECT_FALSE(compress::ownWeightsPay(curve, 4));
+  // Beyond the most textures the last step goes on.
+  curve = {with(7, false, 700, 4.0), with(8, false, 800, 2.0), with(8, true, 900, 0.9)};
+  EXPECT_TRUE(compress::ownWeightsPay(curve, 8));
+  curve.back().rmse = 1.1;
+  EXPECT_FALSE(compress::ownWeightsPay(curve, 8));
+  curve = {with(1, false, 100, 0.0), with(2, false, 200, 0.0), with(1, true, 110, 0.0)};
+  EXPECT_FALSE(compress::ownWeightsPay(curve, 1)) << "nothing changes";
+}
+
 TEST(EfficientPoints, AreBeatenByNoOther) {
   EXPECT_THAT(efficientPoints({point(50, 2.0), point(10, 9.0), point(40, 2.0), point(20, 9.0), point(40, 3.0),
                                point(30, 5.0), point(60, 2.5), point(70, 1.0)}),
@@ -311,7 +333,7 @@ TEST_F(Choosing, MapsOfOtherSizesAndSetsOfWeightsCountTheirBytes) {
   io::writeTextFile(folder_ / "c/capture.json", R"({"maps": {"albedo": {"weight": 2}, "detail": {}}})");
   for (const bool per_map : {false, true}) {
     CompressOptions wanted = target(2.5);
-    wanted.weights_per_map = per_map;
+    wanted.weight_sets = per_map ? WeightSets::kPerMap : WeightSets::kShared;
     const CompressReport report = run(wanted);
     expectCurve(report);
     EXPECT_LE(pooledRmse(), 2.5 * (1.0 + 1e-3)) << "covered texels are not quite as the sizes";
@@ -335,12 +357,13 @@ TEST_F(Choosing, ErrorsOfMapsThatShareWeightsAreExpectedOfThemTogether) {
   writeCapture(folder_ / "c", {"one", 12, 64, 64, image::SampleType::kUint8, mixed(0)}, "albedo");
   writeCapture(folder_ / "c", {"other", 12, 64, 64, image::SampleType::kUint8, mixed(1)}, "normal");
   CompressOptions wanted = budget(95000);
+  wanted.weight_sets = WeightSets::kShared;
   const CompressReport report = run(wanted);
   ASSERT_TRUE(report.pooled_rmse);
   EXPECT_NEAR(*report.pooled_rmse, pooledRmse(), 1e-3);
   EXPECT_GT(report.rate->rmse, 3.0);
   EXPECT_NEAR(report.rate->rmse, *report.pooled_rmse, 0.2 * *report.pooled_rmse);
-  wanted.weights_per_map = true;
+  wanted.weight_sets = WeightSets::kPerMap;
   const CompressReport alone = run(wanted);
   EXPECT_LT(alone.rate->rmse, 0.5 * report.rate->rmse);
 }

@@ -34,6 +34,10 @@ class WeightsPerMap : public testing::Test {
   }
 
   CompressReport compress(bool per_map, Method method = Method::kRefined) {
+    return compress(per_map ? WeightSets::kPerMap : WeightSets::kShared, method);
+  }
+
+  CompressReport compress(WeightSets sets, Method method = Method::kRefined) {
     CompressOptions options;
     options.method = method;
     options.unit = "m";
@@ -42,7 +46,7 @@ class WeightsPerMap : public testing::Test {
     options.weight_scale = 8;
     options.restarts = 10;
     options.cluster_restarts = 8;
-    options.weights_per_map = per_map;
+    options.weight_sets = sets;
     return compressCapture(openCapture(folder_ / "c"), folder_ / "p", options, testDevice(), progress_);
   }
   Package package() const { return Package::open(folder_ / "p"); }
@@ -86,6 +90,28 @@ TEST_F(WeightsPerMap, WorkWithEveryMethodAndAgreeWithTheReport) {
     for (std::size_t m = 0; m < report.rmse.size(); ++m)
       EXPECT_NEAR(errors[m], report.rmse[m].second, 1e-3 * errors[m]);
   }
+}
+
+/// The sum of the maps' Gram matrices starts from other bits than those of all maps together, but for the same thing.
+TEST_F(WeightsPerMap, AreChosenWhereTheyPay) {
+  write(wrinkles, otherWrinkles);
+  EXPECT_EQ(compress(WeightSets::kAuto).weight_sets, 2);
+  const std::vector<double> chosen = decodedErrors();
+  EXPECT_EQ(compress(true).weight_sets, 2);
+  EXPECT_EQ(chosen, decodedErrors());
+
+  write(wrinkles, [](int x, int y, int c, int n) { return 0.8 * wrinkles(x, y, c, n); });  // they move as one
+  EXPECT_EQ(compress(WeightSets::kAuto).weight_sets, 1);
+  const std::vector<double> together = decodedErrors();
+  EXPECT_EQ(compress(false).weight_sets, 1);
+  const std::vector<double> shared = decodedErrors();
+  for (std::size_t m = 0; m < 2; ++m) EXPECT_NEAR(together[m], shared[m], 0.02 * shared[m]) << m;
+}
+
+TEST_F(WeightsPerMap, AreSharedByMethodsThatFitNothing) {
+  write(wrinkles, otherWrinkles);
+  EXPECT_EQ(compress(WeightSets::kAuto, Method::kPaper).weight_sets, 1);
+  EXPECT_EQ(package().weightSets().size(), 1u);
 }
 
 // A map is what it would be by itself, whatever the other is.

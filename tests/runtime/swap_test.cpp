@@ -85,21 +85,21 @@ class Swap : public testing::Test {
     staged.commit();
   }
 
-  /// Calls `read` again and again while packages take turns.
+  /// Calls `read` again and again while packages take turns, until both have happened often. How long that takes is the
+  /// disk's matter: each turn waits for what is written.
   void whileSwapping(const std::function<void()>& read) const {
     std::atomic<bool> done = false;
     std::atomic<int> swaps = 0;
-    std::thread writer([&] {
+    std::thread writer([&] {  // one that fails ends the test: nothing catches it
       for (int turn = 1; !done; ++turn, ++swaps) replace(turn % 2);
     });
     try {
-      for (int i = 0; i < 40 || (swaps < 20 && i < 400); ++i) read();
+      for (int reads = 0; reads < 40 || swaps < 20; ++reads) read();
     } catch (const std::exception& error) {
       ADD_FAILURE() << error.what();
     }
     done = true;
     writer.join();
-    EXPECT_GE(swaps, 10) << "nothing was tried";
   }
 
   void expectOneOfThem(const Frames& frames) const { EXPECT_TRUE(frames == expected_[0] || frames == expected_[1]); }

@@ -272,7 +272,7 @@ await run('a clip weighs an expression called time', async () => {
     const clock = await open(browser, shown.url);
     await clock.setInputFiles('#clip', clip);
     await clock.waitForFunction(() => document.getElementById('note').textContent.includes('2 frames'));
-    await clock.waitForFunction(() => document.querySelector('#expressions input[name="time"]').value === '0.25', null, { timeout: 9000 });
+    await clock.waitForFunction(() => document.querySelector('#expressions input[name="time"]').value === '0.25');
     await clock.close();
   } finally {
     shown.stop();

@@ -35,8 +35,9 @@ struct CompressOptions {
   std::vector<BlockFormat> format_choice;
   /// Weight maps that each set will have beside those of the expressions: a budget counts them too.
   int further_weight_maps = 0;
-  /// A set of weights for every map, instead of one that all share.
-  bool weights_per_map = false;
+  /// Which maps share weights. What kAuto chooses by is estimated while the textures are read the first time; methods
+  /// that fit no weights to texels (all but kRefined and kClosedLoop) share them.
+  WeightSets weight_sets = WeightSets::kAuto;
   int weight_scale = 8;  ///< texels of the largest map per weight cell, per axis; 1 to 64
   /// Poisson-disk radius of the mask samples; bare numbers are in the mesh's unit. The paper's 3 cm.
   geometry::Length mask_radius{3.0, geometry::LengthUnit::kCentimetre};
@@ -69,6 +70,7 @@ struct RatePoint {
   std::optional<BlockFormat> difference_format;  ///< of their difference textures
   std::uint64_t bytes = 0;                       ///< run-time memory, as Package::bytesInMemory() counts it
   double rmse = 0.0;                             ///< estimate, in 1/255, pooled over the maps by their metric weights
+  bool weights_per_map = false;                  ///< a set of weights for every map; else one for all
 
   bool operator==(const RatePoint&) const = default;
 };
@@ -77,6 +79,7 @@ struct RatePoint {
 struct CompressReport {
   int differences = 0;   ///< C
   int weight_scale = 0;  ///< texels of the largest map per weight cell, per axis
+  int weight_sets = 1;   ///< of weights: one, or one for every map
   /// What a target or budget was chosen from: rising bytes, falling RMSE. Empty where neither was asked for.
   std::vector<RatePoint> rate_curve;
   std::optional<RatePoint> rate;  ///< that of them which was taken

@@ -24,9 +24,18 @@ enum class PermutationSolver {
   kMessagePassing,  ///< message passing between pairs and triangles of masks, greedy starts, branch and bound
 };
 
+/// Which maps share a set of weights.
+enum class WeightSets {
+  kAuto,    ///< a set for each where that errs less than what else its bytes could buy, else one for all
+  kShared,  ///< one for all
+  kPerMap,  ///< one for each
+};
+
 template <>
 const std::vector<NamedValue<Method>>& namesOf();
 template <>
 const std::vector<NamedValue<PermutationSolver>>& namesOf();
+template <>
+const std::vector<NamedValue<WeightSets>>& namesOf();
 
 }  // namespace facezip

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "compress/block_stage.hpp"
@@ -22,9 +23,10 @@ raster::GridMasks layGrid(const CompressionJob& job, const PackageForm& form) {
 }
 
 /// Weights of every group as the method starts from them.
-std::vector<SearchedWeights> searchGroups(const CompressionJob& job, const PackageForm& form, const CellMasks& cells) {
+std::vector<SearchedWeights> searchGroups(const CompressionJob& job, const PackageForm& form,
+                                          std::span<const GramMatrices> all_grams, const CellMasks& cells) {
   std::vector<SearchedWeights> searched;
-  for (const GramMatrices& grams : job.grams.grams) {
+  for (const GramMatrices& grams : all_grams) {
     if (job.options.method == Method::kCompressStretch) {
       searched.push_back(influenceWeights(job.capture, job.model.face, *job.maps.maps[job.maps.reference].raster,
                                           form.weight_scale, job.run));
@@ -47,8 +49,9 @@ std::unique_ptr<TextureSource> directTextures(const CompressionJob& job, const W
 }
 
 std::vector<FittedWeights> fitGroups(const CompressionJob& job, const PackageForm& form, const WeightSpace& space,
-                                     const MapGroups& groups, const std::vector<SearchedWeights>& searched,
-                                     const CoveredFace& face, int band_rows) {
+                                     const MapGroups& groups, std::span<const GramMatrices> all_grams,
+                                     const std::vector<SearchedWeights>& searched, const CoveredFace& face,
+                                     int band_rows) {
   std::vector<FittedWeights> fitted;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     if (!fitsTextures(job.options.method)) {
@@ -57,7 +60,7 @@ std::vector<FittedWeights> fitGroups(const CompressionJob& job, const PackageFor
       if (form.blocks) fitted.back().neutrals = codeNeutrals(form, groups[g], job.run);
       continue;
     }
-    const GramMatrices& grams = job.grams.grams[g];
+    const GramMatrices& grams = all_grams[g];
     const FitProblem problem{space,
                              groups[g],
                              searched[g].weights,
@@ -96,7 +99,10 @@ void noteSpareTextures(const WeightSpace& space, Progress& progress) {
 
 Attempt makePackage(const CompressionJob& job, const PackageForm& form, const std::filesystem::path& directory) {
   const WeightSpace space = weightSpace(job.maps, form);
-  const MapGroups groups = groupMaps(job.maps, job.options.weights_per_map, form.weight_scale);
+  const MapGroups groups = groupMaps(job.maps, form.weights_per_map, form.weight_scale);
+  const bool sums_grams = groups.size() < job.grams.grams.size();
+  const std::optional<GramMatrices> sum = sums_grams ? std::optional(sumOf(job.grams, groups.front())) : std::nullopt;
+  const std::span<const GramMatrices> grams = sum ? std::span(&*sum, 1) : std::span(job.grams.grams);
   const int band_rows = job.memory.bandRows(form);
   raster::GridMasks grid = layGrid(job, form);
   const MaskGuides guides = makeMaskGuides(job.model.face, job.model.masks, grid);
@@ -104,9 +110,9 @@ Attempt makePackage(const CompressionJob& job, const PackageForm& form, const st
   noteSpareTextures(space, job.run.progress);
 
   // Masks of the cells are not needed any more once there are weights: their memory is the fit's.
-  const std::vector<SearchedWeights> searched = searchGroups(job, form, std::exchange(grid.cells, {}));
+  const std::vector<SearchedWeights> searched = searchGroups(job, form, grams, std::exchange(grid.cells, {}));
   const CoveredFace face{grid.covered, job.grams.covered_texels};
-  const std::vector<FittedWeights> fitted = fitGroups(job, form, space, groups, searched, face, band_rows);
+  const std::vector<FittedWeights> fitted = fitGroups(job, form, space, groups, grams, searched, face, band_rows);
 
   const PermutationRecord& permutation = searched.back().permutation;
   PackageContent content{job.capture,
@@ -129,7 +135,7 @@ Attempt makePackage(const CompressionJob& job, const PackageForm& form, const st
 bool fitsMemory(const CompressionJob& job, const PackageForm& form) {
   try {
     job.memory.bandRows(form);
-    for (const auto& group : groupMaps(job.maps, job.options.weights_per_map, form.weight_scale)) {
+    for (const auto& group : groupMaps(job.maps, form.weights_per_map, form.weight_scale)) {
       job.memory.windowRows(form, group);
     }
     return true;

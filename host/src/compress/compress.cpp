@@ -14,6 +14,7 @@
 #include "compress/compress_stretch.hpp"
 #include "compress/face_guides.hpp"
 #include "compress/open_textures.hpp"
+#include "compress/weight_set_choice.hpp"
 #include "io/staged_directory.hpp"
 #include "package/footprint.hpp"
 #include "rate/rate_search.hpp"
@@ -38,7 +39,7 @@ std::uint64_t diskBytes(const fs::path& directory) {
 }
 
 PackageForm formOf(const RatePoint& point) {
-  PackageForm form{point.differences, point.weight_scale, point.code_bits, std::nullopt};
+  PackageForm form{point.differences, point.weight_scale, point.code_bits, std::nullopt, point.weights_per_map};
   if (point.texture_format) form.blocks = TextureFormats{*point.texture_format, *point.difference_format};
   return form;
 }
@@ -46,24 +47,25 @@ PackageForm formOf(const RatePoint& point) {
 PackageForm formOf(const CompressOptions& options) {
   const bool stretches = options.method == Method::kCompressStretch;
   PackageForm form{stretches ? kCompressStretchMaps : options.differences, options.weight_scale, std::nullopt,
-                   std::nullopt};
+                   std::nullopt, options.weight_sets == WeightSets::kPerMap};
   if (options.texture_format) {
     form.blocks = TextureFormats{*options.texture_format, options.difference_format.value_or(*options.texture_format)};
   }
   return form;
 }
 
-std::optional<RateSearch> searchRates(const CompressOptions& options, const MapSet& maps, std::size_t weight_sets) {
+std::optional<RateSearch> searchRates(const CompressOptions& options, const MapSet& maps) {
   if (!options.target_rmse && !options.budget_bytes) return std::nullopt;
-  return std::optional<RateSearch>(std::in_place, options, maps, static_cast<int>(weight_sets));
+  return std::optional<RateSearch>(std::in_place, options, maps);
 }
 
 /// Too little memory is to be said before the work, not in its middle, and the refinement's windows need most.
-void requireMemory(const CompressOptions& options, const MemoryPlan& memory, const PackageForm& form,
-                   const std::vector<std::vector<GridMap>>& groups) {
+void requireMemory(const CompressOptions& options, const MemoryPlan& memory, const PackageForm& form, MapSet& maps) {
   const auto method = options.method;
   if (method != Method::kRefined && method != Method::kClosedLoop) return;
-  for (const std::vector<GridMap>& group : groups) memory.windowRows(form, group);
+  for (const std::vector<GridMap>& group : groupMaps(maps, form.weights_per_map, form.weight_scale)) {
+    memory.windowRows(form, group);
+  }
 }
 
 /// A change that the sample of a map's texels missed altogether leaves nothing to estimate by: all of them are shown.
@@ -97,10 +99,11 @@ void requireFormats(const PackageForm& form, const MapSet& maps) {
   }
 }
 
-/// Packages of the forms that a target asks for, one after the other, until one meets it; of the one form where there
-/// is no target.
-Attempt makePackages(const CompressionJob& job, RateSearch* rates, io::StagedDirectory& staged) {
-  if (rates == nullptr) return makePackage(job, formOf(job.options), staged.path());
+/// Packages of the forms that a target asks for, one after the other, until one meets it; of the `fixed` form where
+/// there is no target.
+Attempt makePackages(const CompressionJob& job, const PackageForm& fixed, RateSearch* rates,
+                     io::StagedDirectory& staged) {
+  if (rates == nullptr) return makePackage(job, fixed, staged.path());
   while (true) {
     const RatePoint point = rates->choose([&job](const RatePoint& p) { return fitsMemory(job, formOf(p)); });
     Attempt attempt = makePackage(job, formOf(point), staged.path());
@@ -141,29 +144,32 @@ CompressReport compressCapture(const Capture& capture, const fs::path& package, 
   clock.book("masks");
 
   layOutMaps(maps, model.face.mesh, model.face.region, options.gutter);
-  const std::size_t weight_sets = options.weights_per_map ? maps.maps.size() : 1;
-  std::optional<RateSearch> rates = searchRates(options, maps, weight_sets);
+  std::optional<RateSearch> rates = searchRates(options, maps);
+  std::optional<RateEstimate> sharing = rates ? std::nullopt : estimateWeightSets(options, maps);
+  RateEstimate* const estimate = rates ? &rates->estimate() : sharing ? &*sharing : nullptr;
   const PackageForm first_form = rates ? formOf(rates->smallest()) : formOf(options);
   requireFormats(first_form, maps);
   for (const BlockFormat format : options.format_choice) {
-    requireFormats({first_form.differences, first_form.weight_scale, std::nullopt, TextureFormats{format, format}},
-                   maps);
+    requireFormats(
+        {first_form.differences, first_form.weight_scale, std::nullopt, TextureFormats{format, format}, false}, maps);
   }
-  const auto groups = groupMaps(maps, options.weights_per_map, first_form.weight_scale);
-  const MemoryPlan memory(maps, slots, static_cast<int>(weight_sets), run);
-  requireMemory(options, memory, first_form, groups);
+  const bool each_map = first_form.weights_per_map || (estimate != nullptr && options.weight_sets == WeightSets::kAuto);
+  const auto groups = groupMaps(maps, each_map, first_form.weight_scale);
+  const MemoryPlan memory(maps, slots, groups.size(), run);
+  requireMemory(options, memory, first_form, maps);
   const int band_rows = memory.bandRows(first_form);
   clock.book("weight grid");
 
-  const auto observe = [&rates](std::size_t m, const MapBand& band) {
-    if (rates) rates->estimate().addBand(m, band);
+  const auto observe = [estimate](std::size_t m, const MapBand& band) {
+    if (estimate != nullptr) estimate->addBand(m, band);
   };
   const GramStage grams = accumulateGrams(groups, masks, slots, model.importance, band_rows, observe, run);
-  if (rates) lookAgain(rates->estimate(), maps, band_rows, run);
+  if (estimate != nullptr) lookAgain(*estimate, maps, band_rows, run);
 
   const CompressionJob job{capture, options, maps, model, masks, grams, memory, run};
   RateSearch* const search = rates ? &*rates : nullptr;
-  const Attempt attempt = makePackages(job, search, staged);
+  const PackageForm form = sharing ? chooseWeightSets(*sharing, job, first_form) : first_form;
+  const Attempt attempt = makePackages(job, form, search, staged);
   if (options.mesh) {
     writeFaceMesh(capture, model.face, model.masks.unit, model.expression_meshes, staged.path());
     clock.book("mesh");

@@ -38,11 +38,24 @@ GramStage accumulateGrams(const std::vector<std::vector<GridMap>>& groups, const
                      fmt::format("Gram matrices: {}", map.map->source->name), run.progress, add);
       stage.covered_texels.resize(std::max(stage.covered_texels.size(), map.index + 1));
       stage.covered_texels[map.index] = covered;
+      stage.fit_weights.resize(stage.covered_texels.size());
+      stage.fit_weights[map.index] = map.fit_weight;
     }
     stage.grams.push_back(accumulator.finish());
   }
   run.clock.book("Gram matrices");
   return stage;
+}
+
+GramMatrices sumOf(const GramStage& stage, const std::vector<GridMap>& maps) {
+  GramMatrices sum = stage.grams.front();
+  std::ranges::fill(sum.values, 0.0);
+  for (const GridMap& map : maps) {
+    const double factor = map.fit_weight / stage.fit_weights[map.index];  // by itself no map weighs nothing
+    const std::vector<double>& values = stage.grams[map.index].values;
+    for (std::size_t i = 0; i < values.size(); ++i) sum.values[i] += factor * values[i];
+  }
+  return sum;
 }
 
 }  // namespace facezip::compress

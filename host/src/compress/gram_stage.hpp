@@ -15,7 +15,8 @@
 namespace facezip::compress {
 
 struct GramStage {
-  std::vector<GramMatrices> grams;            ///< of every group
+  std::vector<GramMatrices> grams;            ///< of all maps together, or of each
+  std::vector<double> fit_weights;            ///< of every map, as they are in these
   std::vector<std::uint64_t> covered_texels;  ///< of every map
 };
 
@@ -27,5 +28,9 @@ using ObserveBand = std::function<void(std::size_t index, const MapBand& band)>;
 GramStage accumulateGrams(const std::vector<std::vector<GridMap>>& groups, const raster::TexelMasks& masks,
                           const GramSlots& slots, const std::optional<Importance>& importance, int band_rows,
                           const ObserveBand& observe, const device::Run& run);
+
+/// The matrices of all maps together, where `stage` has those of each.
+/// maps  with the fit weights that they have among each other
+GramMatrices sumOf(const GramStage& stage, const std::vector<GridMap>& maps);
 
 }  // namespace facezip::compress

@@ -32,8 +32,10 @@ std::uint64_t MemoryPlan::residentBytes(const PackageForm& form) const {
         blocks::blockBytes(blocks::formatFor(form.blocks->neutral, shape.channels), shape.width, shape.height);
   }
   const auto weights = static_cast<std::uint64_t>(space.expressions) * static_cast<std::uint64_t>(space.textures);
-  return class_bytes + neutral_bytes + slots_.bytes(space.expressions) * weight_sets_ +
-         cells * (weights * (2 * weight_sets_ + 2) + kMasksOfACell * (sizeof(int) + sizeof(float)) + sizeof(int));
+  const std::uint64_t weight_sets = form.weights_per_map ? maps_.maps.size() : 1;
+  const std::uint64_t summed = gram_sets_ > weight_sets ? 1 : 0;  // those of all maps together beside those of each
+  return class_bytes + neutral_bytes + slots_.bytes(space.expressions) * (gram_sets_ + summed) +
+         cells * (weights * (2 * weight_sets + 2) + kMasksOfACell * (sizeof(int) + sizeof(float)) + sizeof(int));
 }
 
 namespace {

@@ -14,9 +14,9 @@ namespace facezip::compress {
 /// What the plan of a job depends on. References outlive it.
 class MemoryPlan {
  public:
-  /// weight_sets  of the package
-  MemoryPlan(const MapSet& maps, const GramSlots& slots, int weight_sets, const device::Run& run)
-      : maps_(maps), slots_(slots), weight_sets_(static_cast<std::uint64_t>(weight_sets)), run_(run) {}
+  /// gram_sets  sets of Gram matrices that are kept: one, or one for every map
+  MemoryPlan(const MapSet& maps, const GramSlots& slots, std::size_t gram_sets, const device::Run& run)
+      : maps_(maps), slots_(slots), gram_sets_(gram_sets), run_(run) {}
 
   /// Rows of a band that all maps can have. Throws InputError where --memory is too little for the smallest band,
   /// DeviceError where the device is.
@@ -31,7 +31,7 @@ class MemoryPlan {
 
   const MapSet& maps_;
   const GramSlots& slots_;
-  std::uint64_t weight_sets_;
+  std::uint64_t gram_sets_;
   const device::Run& run_;
 };
 

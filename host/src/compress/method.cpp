@@ -24,4 +24,14 @@ const std::vector<NamedValue<PermutationSolver>>& namesOf() {
   return names;
 }
 
+template <>
+const std::vector<NamedValue<WeightSets>>& namesOf() {
+  static const std::vector<NamedValue<WeightSets>> names = {
+      {WeightSets::kAuto, "auto", "chosen"},
+      {WeightSets::kShared, "shared", "one set"},
+      {WeightSets::kPerMap, "per-map", "a set for every map"},
+  };
+  return names;
+}
+
 }  // namespace facezip

@@ -34,7 +34,7 @@ std::string methodJson(const CompressOptions& options, const PackageForm& form, 
                  {"seed", options.seed},
                  {"region", options.region},
                  {"importance", options.importance},
-                 {"weights_per_map", options.weights_per_map},
+                 {"weights_per_map", form.weights_per_map},
                  {"unit", options.unit.value_or("")}};
   if (options.masks) record["masks"] = *options.masks;
   if (options.gutter) record["gutter"] = *options.gutter;
@@ -66,7 +66,7 @@ CompressOptions optionsFromMethodJson(const std::string& json_text, const std::s
     options.seed = record.at("seed").get<std::uint64_t>();
     options.region = record.at("region").get<std::string>();
     options.importance = record.at("importance").get<std::string>();
-    options.weights_per_map = record.at("weights_per_map").get<bool>();
+    options.weight_sets = record.at("weights_per_map").get<bool>() ? WeightSets::kPerMap : WeightSets::kShared;
     if (const std::string unit = record.at("unit").get<std::string>(); !unit.empty()) options.unit = unit;
     if (record.contains("masks")) options.masks = record["masks"].get<int>();
     if (record.contains("gutter")) options.gutter = record["gutter"].get<int>();

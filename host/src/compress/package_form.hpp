@@ -20,6 +20,7 @@ struct PackageForm {
   int weight_scale = 8;          ///< texels of the largest map per weight cell, per axis
   std::optional<int> code_bits;  ///< of difference textures of maps of 16 bits or floats; none: as the fit needs them
   std::optional<TextureFormats> blocks;  ///< none: all textures are images
+  bool weights_per_map = false;          ///< a set of weights for every map; else one for all
 };
 
 /// The weight maps of a package of this form.

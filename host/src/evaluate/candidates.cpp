@@ -46,7 +46,7 @@ Candidates makeCandidates(const Package& package, const Subject& subject, const 
       candidates.own_keys.push_back(key);
     } else {
       CompressOptions compress = subject.recorded;
-      compress.weights_per_map = true;
+      compress.weight_sets = WeightSets::kPerMap;
       add(key, compress);
     }
   }

@@ -98,6 +98,21 @@ std::vector<RatePoint> efficientPoints(std::vector<RatePoint> curve) {
   return efficient;
 }
 
+bool ownWeightsPay(std::span<const RatePoint> curve, int differences) {
+  const RatePoint* own = nullptr;
+  const RatePoint* shared = nullptr;
+  const RatePoint* neighbour = nullptr;  // one texture more, or less where there are no more
+  const int next = differences == 8 ? 7 : differences + 1;
+  for (const RatePoint& point : curve) {
+    if (point.differences == differences) (point.weights_per_map ? own : shared) = &point;
+    if (point.differences == next && !point.weights_per_map) neighbour = &point;
+  }
+  if (shared->rmse <= 0.0 || neighbour->rmse <= 0.0) return false;  // nothing is left to gain
+  const auto bytes = [](const RatePoint* point) { return static_cast<double>(point->bytes); };
+  const double share = (bytes(own) - bytes(shared)) / (bytes(neighbour) - bytes(shared));
+  return own->rmse < shared->rmse * std::pow(neighbour->rmse / shared->rmse, share);
+}
+
 std::optional<RatePoint> chooseRate(std::span<const RatePoint> efficient, std::optional<double> target,
                                     std::optional<std::uint64_t> budget, double calibration) {
   std::optional<RatePoint> chosen;

@@ -55,6 +55,12 @@ std::vector<RatePoint> rateCurve(std::span<const RateMap> maps, std::span<const 
 /// The points that no other beats in both size and error, rising by size.
 std::vector<RatePoint> efficientPoints(std::vector<RatePoint> curve);
 
+/// True if a set of weights for every map errs no more, for its bytes, than packages that share one: their error at
+/// these bytes is that between one number of difference textures and the next, log RMSE growing evenly with bytes.
+/// curve  points of both kinds that are alike but for the number of textures
+/// differences  C of the package that is to be
+bool ownWeightsPay(std::span<const RatePoint> curve, int differences);
+
 /// The smallest point whose error times `calibration` is at most `target`, and within `budget` bytes; without a target
 /// the best within the budget; nothing if there is none.
 std::optional<RatePoint> chooseRate(std::span<const RatePoint> efficient, std::optional<double> target,

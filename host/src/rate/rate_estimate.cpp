@@ -9,7 +9,6 @@
 namespace facezip::compress {
 namespace {
 
-constexpr int kScales[] = {4, 8, 16, 32};
 /// One in so many of the largest blocks is looked at. A face of 1024 x 1024 has 900 of them.
 constexpr int kStride = 7;
 
@@ -33,20 +32,21 @@ std::optional<std::vector<int>> sharedScales(const MapSet& maps, int scale) {
 
 }  // namespace
 
-RateEstimate::RateEstimate(const MapSet& maps, int further_weight_maps, int weight_sets)
+RateEstimate::RateEstimate(const MapSet& maps, int further_weight_maps, WeightSets weight_sets,
+                           std::span<const int> scales)
     : maps_(maps),
       expressions_(maps.maps.front().samples->expressions()),
       weight_maps_(expressions_ + further_weight_maps),
       weight_sets_(weight_sets) {
-  const bool shares = weight_sets == 1 && maps.maps.size() > 1;
+  const bool shares = weight_sets != WeightSets::kPerMap && maps.maps.size() > 1;
   sides_.resize(maps.maps.size());
-  for (const int scale : kScales) {
+  for (const int scale : scales) {
     const std::optional<std::vector<int>> of_maps = sharedScales(maps, scale);
     if (!of_maps) continue;
     scales_.push_back(scale);
     for (std::size_t m = 0; m < maps.maps.size(); ++m) sides_[m].push_back((*of_maps)[m]);
   }
-  if (scales_.empty()) weightScales(maps, kScales[0]);  // says what does not fit
+  if (scales_.empty()) weightScales(maps, scales.front());  // says what does not fit
   for (std::size_t m = 0; m < maps.maps.size(); ++m) {
     const image::ImageShape& shape = maps.maps[m].samples->shape();
     const long side = sides_[m].back();
@@ -93,7 +93,7 @@ void RateEstimate::addBand(std::size_t m, const MapBand& band) {
   energies_[m].addBand(band.begin, band.samples, band.shape, coveredTexels(band.shape, band.masks));
 }
 
-std::vector<RatePoint> RateEstimate::curve(std::span<const RateFormats> formats) const {
+std::vector<RateMap> RateEstimate::rateMaps() const {
   std::vector<RateMap> maps;
   for (std::size_t m = 0; m < maps_.maps.size(); ++m) {
     const image::ImageShape& shape = maps_.maps[m].samples->shape();
@@ -113,14 +113,28 @@ std::vector<RatePoint> RateEstimate::curve(std::span<const RateFormats> formats)
     map.covered_samples *= strides_[m];  // maps may be looked at more or less closely
     maps.push_back(std::move(map));
   }
+  return maps;
+}
+
+std::vector<RatePoint> RateEstimate::curve(std::span<const RateFormats> formats) const {
+  const std::vector<RateMap> maps = rateMaps();
   std::vector<std::uint64_t> cells;
   const image::ImageShape& reference = maps_.maps[maps_.reference].samples->shape();
   for (const int scale : scales_) {
     cells.push_back(static_cast<std::uint64_t>((reference.width + scale - 1) / scale) *
-                    static_cast<std::uint64_t>((reference.height + scale - 1) / scale) *
-                    static_cast<std::uint64_t>(weight_sets_));
+                    static_cast<std::uint64_t>((reference.height + scale - 1) / scale));
   }
-  return rateCurve(maps, scales_, cells, weight_maps_, formats, sharedLeft());
+  std::vector<RatePoint> curve;
+  if (weight_sets_ != WeightSets::kPerMap || maps.size() == 1) {
+    curve = rateCurve(maps, scales_, cells, weight_maps_, formats, sharedLeft());
+  }
+  if (weight_sets_ == WeightSets::kShared || maps.size() == 1) return curve;
+  for (std::uint64_t& of_scale : cells) of_scale *= maps.size();
+  for (RatePoint& point : rateCurve(maps, scales_, cells, weight_maps_, formats)) {
+    point.weights_per_map = true;
+    curve.push_back(point);
+  }
+  return curve;
 }
 
 }  // namespace facezip::compress

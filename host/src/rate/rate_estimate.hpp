@@ -15,10 +15,11 @@ namespace facezip::compress {
 
 class RateEstimate {
  public:
-  /// Finds the weight scales, of 4, 8, 16 and 32, that all maps can share. Throws InputError where there is none.
+  /// Throws InputError where the maps can share none of the scales.
   /// further_weight_maps  of each set, beside those of the N expressions
-  /// weight_sets  1, or one for every map
-  RateEstimate(const MapSet& maps, int further_weight_maps, int weight_sets);
+  /// weight_sets  what the curve is to have: packages that share weights, such as have a set for every map, or both
+  /// scales  weight scales to look at, rising, each a multiple of the one before
+  RateEstimate(const MapSet& maps, int further_weight_maps, WeightSets weight_sets, std::span<const int> scales);
 
   /// Looks at some of the texels of a band of map `m`; bands in rising order.
   void addBand(std::size_t m, const MapBand& band);
@@ -35,12 +36,13 @@ class RateEstimate {
  private:
   void shareGrams();
   std::vector<std::vector<double>> sharedLeft() const;
+  std::vector<RateMap> rateMaps() const;
   BlockRankEnergy newEnergies(std::size_t m) const;
 
   const MapSet& maps_;
   int expressions_;
   int weight_maps_;
-  int weight_sets_;
+  WeightSets weight_sets_;
   std::vector<int> scales_;                ///< of the largest map, rising
   std::vector<std::vector<int>> sides_;    ///< of every map: texels of a block at each scale
   std::vector<BlockRankEnergy> energies_;  ///< of every map

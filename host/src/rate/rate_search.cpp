@@ -12,6 +12,8 @@
 namespace facezip::compress {
 namespace {
 
+constexpr int kWeightScales[] = {4, 8, 16, 32};
+
 std::vector<RateFormats> formatsOf(const CompressOptions& options) {
   if (options.format_choice.empty()) {
     return {{options.texture_format, options.difference_format ? options.difference_format : options.texture_format}};
@@ -26,12 +28,14 @@ std::vector<RateFormats> formatsOf(const CompressOptions& options) {
 std::string describe(const RatePoint& point) {
   const std::string format =
       point.difference_format ? fmt::format(" in {}", blockFormatName(*point.difference_format)) : "";
-  return fmt::format("{} difference{}{} with weights at 1/{}", point.differences, point.differences == 1 ? "" : "s",
-                     format, point.weight_scale);
+  return fmt::format("{} difference{}{} with weights at 1/{}{}", point.differences, point.differences == 1 ? "" : "s",
+                     format, point.weight_scale, point.weights_per_map ? " for each map" : "");
 }
 
-RateSearch::RateSearch(const CompressOptions& options, const MapSet& maps, int weight_sets)
-    : options_(options), formats_(formatsOf(options)), estimate_(maps, options.further_weight_maps, weight_sets) {
+RateSearch::RateSearch(const CompressOptions& options, const MapSet& maps)
+    : options_(options),
+      formats_(formatsOf(options)),
+      estimate_(maps, options.further_weight_maps, options.weight_sets, kWeightScales) {
   // Sizes are known before any texel is.
   const RatePoint least = smallest();
   if (options.budget_bytes && least.bytes > *options.budget_bytes) {

@@ -20,7 +20,7 @@ std::string describe(const RatePoint& point);
 class RateSearch {
  public:
   /// options, maps  must outlive this. Throws InputError if the smallest package is beyond the budget.
-  RateSearch(const CompressOptions& options, const MapSet& maps, int weight_sets);
+  RateSearch(const CompressOptions& options, const MapSet& maps);
 
   /// To be shown the texels before the first choose().
   RateEstimate& estimate() { return estimate_; }

@@ -132,6 +132,7 @@ std::string toJson(const CompressReport& report) {
       {"permutation", permutationJson(report)},
       {"differences", report.differences},
       {"weight_scale", report.weight_scale},
+      {"weight_sets", report.weight_sets},
       {"rate_curve", json::array()},
       {"rmse", json::object()},
       {"refinement", {{"squared_errors", report.refinement_errors}}},
@@ -142,6 +143,7 @@ std::string toJson(const CompressReport& report) {
   for (const RatePoint& point : report.rate_curve) {
     object["rate_curve"].push_back({{"differences", point.differences},
                                     {"weight_scale", point.weight_scale},
+                                    {"weights_per_map", point.weights_per_map},
                                     {"code_bits", point.code_bits},
                                     {"texture_format", formatJson(point.texture_format)},
                                     {"difference_format", formatJson(point.difference_format)},

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "facezip/block_size.hpp"
 #include "facezip/check.hpp"
 #include "facezip/package.hpp"
 #include "facezip/printable.hpp"

@@ -160,7 +160,7 @@ TEST_F(Convert, WeightsOfManyTexturesAndSetsAreKeptInOrder) {
   Progress progress;
   CompressOptions options = smallOptions();
   options.differences = 5;  // two atlases
-  options.weights_per_map = true;
+  options.weight_sets = WeightSets::kPerMap;
   compressCapture(openCapture(at("two")), at("sets"), options, testDevice(), progress);
   const ConvertReport report = convert(at("sets"), at("sets-bc7"), BlockFormat::kBc7);
   for (const ConvertReport::Map& map : report.maps) EXPECT_LT(map.rmse, 0.5) << map.name;

@@ -2,7 +2,6 @@
 // decode while they sample.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -31,17 +30,6 @@ enum class BlockFormat {
 
 /// "bc7", "astc-6x6": what the command line, package.json and reports call a format.
 std::string_view blockFormatName(BlockFormat format);
-
-/// Texels along the sides of a block, and its bytes.
-struct BlockSize {
-  int width = 0;
-  int height = 0;
-  int bytes = 0;
-};
-BlockSize blockSize(BlockFormat format);
-
-/// Bytes of a texture of so many texels, without mip levels. Sides need not be multiples of the block's.
-std::uint64_t blockTextureBytes(BlockFormat format, int width, int height);
 
 /// The format of that name, with `option` named in the error. Throws InputError that lists the names there are.
 BlockFormat blockFormatOf(std::string_view name, std::string_view option);

@@ -4,6 +4,7 @@
 #include "facezip/alignment.hpp"
 #include "facezip/blend.hpp"
 #include "facezip/block_format.hpp"
+#include "facezip/block_size.hpp"
 #include "facezip/capture.hpp"
 #include "facezip/check.hpp"
 #include "facezip/compress.hpp"

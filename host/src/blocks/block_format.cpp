@@ -6,6 +6,7 @@
 #include <array>
 #include <cassert>
 
+#include "facezip/block_size.hpp"
 #include "facezip/error.hpp"
 
 namespace facezip::blocks {

@@ -88,54 +88,68 @@ class DifferenceRows {
   std::vector<std::vector<float>> values_;  ///< [C][row][column][channel]
 };
 
+/// The surface that shows a map; none without a mesh.
+std::optional<raster::UvRaster> rasterOf(const std::optional<geometry::TriangleMesh>& mesh, const PackageMap& map) {
+  if (!mesh) return std::nullopt;
+  std::vector<int> every(toSize(mesh->triangles.rows()));
+  std::iota(every.begin(), every.end(), 0);
+  return std::optional<raster::UvRaster>(std::in_place, *mesh, every, map.width, map.height, 0);
+}
+
+/// Which tiles of a row of tiles change. Adds to `energy`.
+/// products  meanProducts()
+std::vector<bool> changingTiles(const DifferenceRows& differences, const PackageMap& map, int rows,
+                                const Eigen::MatrixXd& products, double& energy) {
+  const auto channels = toSize(map.channels);
+  std::vector<bool> changes(toSize(raster::tilesAlong(map.width)), false);
+  Eigen::VectorXd d(products.rows());
+  for (std::size_t s = 0; s < toSize(rows, map.width) * channels; ++s) {
+    if (!differences.holdsSomething(s)) continue;
+    changes[s / channels % toSize(map.width) / kTileSide] = true;
+    for (std::size_t i = 0; i < differences.textures(); ++i) d[static_cast<Eigen::Index>(i)] = differences.value(i, s);
+    energy += d.dot(products * d);
+  }
+  return changes;
+}
+
+/// Marks row y of a tile, and the cells below what is covered.
+void markRow(const PackageMap& map, int y, int column, std::uint32_t shown, raster::TexelClasses& classes,
+             std::span<std::uint8_t> row_of_cells) {
+  const int left = column * kTileSide;
+  const std::uint32_t inside = (1u << std::min(kTileSide, map.width - left)) - 1u;
+  classes.mark(column, y, inside, shown & inside);
+  for (int x = 0; x < kTileSide; ++x) {
+    if (((shown & inside) >> x & 1u) != 0) row_of_cells[toSize((left + x) / map.weight_scale)] = 1;
+  }
+}
+
 }  // namespace
 
 ShownTexels findShownTexels(const Package& package, int map_index, const std::optional<geometry::TriangleMesh>& mesh,
                             const compress::EncodedWeights& weights, const compress::WeightSpace& space,
                             Progress& progress) {
   const PackageMap& map = package.maps()[toSize(map_index)];
-  const auto channels = toSize(map.channels);
-  std::optional<raster::UvRaster> raster;
-  std::vector<int> every;
-  if (mesh) {
-    every.resize(toSize(mesh->triangles.rows()));
-    std::iota(every.begin(), every.end(), 0);
-    raster.emplace(*mesh, every, map.width, map.height, 0);
-  }
+  const std::optional<raster::UvRaster> raster = rasterOf(mesh, map);
   const Eigen::MatrixXd products =
-      meanProducts(weights, space.textures) / static_cast<double>(space.columns * space.rows);
+      meanProducts(weights, space.textures) / static_cast<double>(space.columns) / static_cast<double>(space.rows);
   ShownTexels shown;
   shown.cells.resize(toSize(space.rows, space.columns), 0);
   auto classes = std::make_shared<raster::TexelClasses>(map.width, map.height);
   DifferenceRows differences(package, map);
-  Eigen::VectorXd d(space.textures);
   progress.stage("looking for texels that change: " + map.name, toSize(map.height));
   for (int begin = 0; begin < map.height; begin += kTileSide) {
     progress.checkCancelled();
     const int end = std::min(begin + kTileSide, map.height);
     differences.read(begin, end);
-    std::vector<bool> tile_changes(toSize(raster::tilesAlong(map.width)), false);
-    for (std::size_t s = 0; s < toSize(end - begin, map.width) * channels; ++s) {
-      if (!differences.holdsSomething(s)) continue;
-      tile_changes[s / channels % toSize(map.width) / kTileSide] = true;
-      for (std::size_t i = 0; i < differences.textures(); ++i)
-        d[static_cast<Eigen::Index>(i)] = differences.value(i, s);
-      shown.energy += d.dot(products * d);
-    }
-    std::optional<raster::TexelClasses> mesh_shows;
-    if (raster) mesh_shows = raster::TexelClasses::coveredRows(*raster, begin, end);
+    const std::vector<bool> changes = changingTiles(differences, map, end - begin, products, shown.energy);
+    std::optional<raster::TexelClasses> surface;
+    if (raster) surface = raster::TexelClasses::coveredRows(*raster, begin, end);
     for (int y = begin; y < end; ++y) {
-      for (std::size_t tile = 0; tile < tile_changes.size(); ++tile) {
-        if (!tile_changes[tile]) continue;
-        const int left = static_cast<int>(tile) * kTileSide;
-        const std::uint32_t inside = (1u << std::min(kTileSide, map.width - left)) - 1u;
-        const int column = static_cast<int>(tile);
-        const std::uint32_t covered = mesh_shows ? mesh_shows->covered(column, y - begin) & inside : inside;
-        classes->mark(column, y, inside, covered);
-        for (int x = 0; x < kTileSide; ++x) {
-          if ((covered >> x & 1u) == 0) continue;
-          shown.cells[toSize(y / map.weight_scale, space.columns) + toSize((left + x) / map.weight_scale)] = 1;
-        }
+      const auto cells =
+          std::span(shown.cells).subspan(toSize(y / map.weight_scale, space.columns), toSize(space.columns));
+      for (int column = 0; column < static_cast<int>(changes.size()); ++column) {
+        if (!changes[toSize(column)]) continue;
+        markRow(map, y, column, surface ? surface->covered(column, y - begin) : ~0u, *classes, cells);
       }
     }
     progress.advance(toSize(end));

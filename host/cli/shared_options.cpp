@@ -166,6 +166,12 @@ void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
       .add_option("--gutter", arguments.gutter,
                   "Texels around UV islands that get masks too (default: 1/64 of the side, at least 16)")
       ->transform(wholeNumber());
+  command
+      .add_option(
+          "--feather", arguments.feather,
+          "Texels over which differences fade out beyond the region's border (default: 1/32 of the side where an "
+          "expression changes tone there, else 0)")
+      ->transform(wholeNumber());
   command.add_flag("!--no-mesh", options.mesh, "Leave the meshes out of the package: no viewer, no exports");
   addMemoryOption(command, arguments.memory);
 }
@@ -188,6 +194,7 @@ CompressOptions parseCompressOptions(const CompressArguments& arguments) {
   if (!arguments.budget.empty()) options.budget_bytes = parseBytes("--budget", arguments.budget);
   options.masks = arguments.masks;
   options.gutter = arguments.gutter;
+  options.feather = arguments.feather;
   if (!arguments.unit.empty()) {
     try {
       geometry::parseUnit(arguments.unit);

@@ -45,6 +45,7 @@ struct CompressArguments {
   std::string unit;
   std::string memory = "2GiB";
   std::optional<int> gutter;
+  std::optional<int> feather;
   CompressOptions options;
 };
 void addCompressOptions(CLI::App& command, CompressArguments& arguments);

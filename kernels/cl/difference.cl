@@ -1,10 +1,12 @@
 // difference.cl - differences of the expressions to the neutral, Delta_n = I_n - I_0 (FaceZip, Eq. 1 and 2), as tiles
-//   differences[tile][n][c][t] = (samples[n + 1][y][x][c] - neutral[y][x][c]) * SAMPLE_UNIT,  0 outside the band
+//   differences[tile][n][c][t] = (samples[n + 1][y][x][c] - neutral[y][x][c]) * SAMPLE_UNIT * fades[tile][t],
+//                                0 outside the band
 //
 // NDRange  global {16, tiles, expressions}, local {16, 1, 1}: one work-item per row of 16 texels of a tile
 // Buffers  tiles        in   [tile] int2      column and row of tiles in the band
 //          samples      in   [1 + expressions][rows][width][CHANNELS] SAMPLE_T, image 0 is the neutral
 //          neutral      in   [rows][width][CHANNELS] NEUTRAL_T: the samples' own, or what a coded one decodes to
+//          fades        in   [tile][256] float, 0 to 1: with FADED alone
 //          differences  out  [tile][expression][channel][256] DIFF_T, units of 1/255 of full scale
 // Defines  CHANNELS, DIFF_T  tiles.h
 //          SAMPLE_T          uchar, ushort or float (uchar)
@@ -12,6 +14,7 @@
 //                            a neutral of uchar stay integers
 //          NEUTRAL_T         SAMPLE_T, or float in units of 1/255 with NEUTRAL_DECODED
 //          NEUTRAL_DECODED   if set, that type; DIFF_T is float then
+//          FADED             if set, there are fades; 16-bit differences are rounded
 
 #include "tiles.h"
 
@@ -67,6 +70,19 @@ static void store_planes(const DIFF16* x, global DIFF_T* row) {
 #endif
 }
 
+#ifdef FADED
+#define ROUND_short convert_short16_rte
+#define ROUND_float convert_float16
+
+// Fades what store_planes() wrote. Apart from it: few captures have anything to fade.
+static void fade_planes(const float16 fade, global DIFF_T* row) {
+  for (int c = 0; c < CHANNELS; ++c) {
+    global DIFF16* plane = (global DIFF16*)(row + c * TILE_TEXELS);
+    *plane = JOIN(ROUND_, DIFF_T)(convert_float16(*plane) * fade);
+  }
+}
+#endif
+
 // A row of which only the first `inside` texels (0 to 15) belong to the band.
 static void edge_row(global const SAMPLE_T* expression, global const NEUTRAL_T* neutral, int inside, DIFF16* x) {
   DIFF_T* samples = (DIFF_T*)x;
@@ -77,6 +93,9 @@ static void edge_row(global const SAMPLE_T* expression, global const NEUTRAL_T* 
 }
 
 kernel void difference(global const int2* tiles, global const SAMPLE_T* samples, global const NEUTRAL_T* neutrals,
+#ifdef FADED
+                       global const float* fades,
+#endif
                        global DIFF_T* differences, int width, int rows) {
   const int row = (int)get_global_id(0);
   const ulong tile = get_global_id(1);
@@ -96,5 +115,9 @@ kernel void difference(global const int2* tiles, global const SAMPLE_T* samples,
   } else {
     edge_row(expression, neutral, inside, rows_of_16);
   }
-  store_planes(rows_of_16, differences + (tile * expressions + n) * CHANNELS * TILE_TEXELS + row * TILE_SIDE);
+  global DIFF_T* out = differences + (tile * expressions + n) * CHANNELS * TILE_TEXELS + row * TILE_SIDE;
+  store_planes(rows_of_16, out);
+#ifdef FADED
+  fade_planes(vload16(0, fades + tile * TILE_TEXELS + row * TILE_SIDE), out);
+#endif
 }

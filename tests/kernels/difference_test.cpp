@@ -34,6 +34,25 @@ INSTANTIATE_TEST_SUITE_P(
                     BandShape{93, 16, 1, 3, SampleType::kFloat32}, BandShape{93, 10, 1, 3, SampleType::kFloat32},
                     BandShape{93, 32, 4, 20, SampleType::kFloat32}));
 
+/// Beyond the region's border: integers are rounded, to even where two are as near.
+TEST_P(Difference, FadesEqualReference) {
+  const BandShape& shape = GetParam();
+  if (smallSizesOnly() && shape.expressions > 3) GTEST_SKIP() << "small sizes only";
+  TileMasks masks = scatteredMasks(shape, 3, 1, 2);
+  Hashed hashed(5);
+  for (std::size_t i = 0; i < masks.texel_weights.size(); ++i) {
+    masks.fades.push_back(i % 7 == 0 ? 0.0f : i % 5 == 0 ? 1.0f : hashed.between(0.0f, 1.0f));
+  }
+  DifferenceProblem problem(testDevice(), shape, masks);
+  problem.run();
+  const std::vector<double> actual = problem.result();
+  const std::vector<double>& expected = problem.expected();
+  ASSERT_EQ(actual.size(), expected.size());
+  const bool integers = shape.sample_type == SampleType::kUint8;
+  const double tolerance = integers ? 0.5 + 1e-4 : 2.0 * 255.0 * kDifferenceRelative;
+  for (std::size_t i = 0; i < actual.size(); ++i) ASSERT_NEAR(actual[i], expected[i], tolerance) << "at " << i;
+}
+
 TEST(Difference, BandWithoutTilesDoesNothing) {
   device::DeviceContext& context = testDevice();
   compress::DeviceTiles tiles(context);

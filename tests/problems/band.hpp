@@ -48,7 +48,8 @@ struct BandProblem {
   const std::vector<double>& delta() const {
     if (delta_.empty()) {
       delta_ = reference::differences(sampleValues(), tilePositions(), shape.width, shape.rows, shape.channels,
-                                      shape.expressions, static_cast<double>(image::unit255(shape.sample_type)));
+                                      shape.expressions, static_cast<double>(image::unit255(shape.sample_type)),
+                                      masks.fades);
     }
     return delta_;
   }

@@ -56,6 +56,9 @@ struct CompressOptions {
   /// fully, black a hundredth.
   std::string importance;
   std::optional<int> gutter;  ///< texels; default max(16, side / 64)
+  /// Texels beyond the region's border, where the mesh goes on, over which differences fade out; 0: they stop at the
+  /// border. None: side / 32 where an expression changes tone or light there, else 0.
+  std::optional<int> feather;
   /// Also put the neutral's mesh and the expressions', where the capture has them, into the package: viewers and
   /// exports need them, frames do not. Takes 36 bytes a vertex and expression of memory while it is written.
   bool mesh = true;
@@ -77,9 +80,11 @@ struct RatePoint {
 
 /// What a compression did, for --report and for tests.
 struct CompressReport {
-  int differences = 0;   ///< C
-  int weight_scale = 0;  ///< texels of the largest map per weight cell, per axis
-  int weight_sets = 1;   ///< of weights: one, or one for every map
+  int differences = 0;       ///< C
+  int weight_scale = 0;      ///< texels of the largest map per weight cell, per axis
+  int weight_sets = 1;       ///< of weights: one, or one for every map
+  int feather = 0;           ///< texels of the largest map over which differences fade out beyond the region
+  double border_step = 0.0;  ///< the largest step at the region's border without it, in 1/255; 0 where it was not asked
   /// What a target or budget was chosen from: rising bytes, falling RMSE. Empty where neither was asked for.
   std::vector<RatePoint> rate_curve;
   std::optional<RatePoint> rate;  ///< that of them which was taken

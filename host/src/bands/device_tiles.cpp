@@ -11,7 +11,8 @@ DeviceTiles::DeviceTiles(device::DeviceContext& context)
       mask_begin_(context, "mask lists of the tiles", CL_MEM_READ_ONLY),
       mask_index_(context, "mask indices of the tiles", CL_MEM_READ_ONLY),
       mask_weights_(context, "mask weights of the tiles", CL_MEM_READ_ONLY),
-      texel_weights_(context, "texel weights of the tiles", CL_MEM_READ_ONLY) {}
+      texel_weights_(context, "texel weights of the tiles", CL_MEM_READ_ONLY),
+      fades_(context, "fades of the tiles", CL_MEM_READ_ONLY) {}
 
 void DeviceTiles::upload(const TileMasks& masks) {
   assert(masks.mask_begin.size() == masks.tiles.size() + 1);
@@ -27,6 +28,9 @@ void DeviceTiles::upload(const TileMasks& masks) {
   mask_index_.upload(masks.mask_index);
   mask_weights_.upload(masks.mask_weights);
   texel_weights_.upload(masks.texel_weights);
+  has_fades_ = !masks.fades.empty();
+  assert(!has_fades_ || masks.fades.size() == masks.texel_weights.size());
+  if (has_fades_) fades_.upload(masks.fades);
 }
 
 std::span<const int> DeviceTiles::masksOf(std::size_t t) const {

@@ -29,6 +29,8 @@ class DeviceTiles {
   const cl::Buffer& maskIndex() const { return mask_index_.buffer(); }        ///< [entry] int, in [0, K)
   const cl::Buffer& maskWeights() const { return mask_weights_.buffer(); }    ///< [entry][256] float
   const cl::Buffer& texelWeights() const { return texel_weights_.buffer(); }  ///< [tile][256] float
+  bool hasFades() const { return has_fades_; }
+  const cl::Buffer& fades() const { return fades_.buffer(); }  ///< [tile][256] float, where there are any
 
  private:
   std::size_t tile_count_ = 0;
@@ -39,6 +41,8 @@ class DeviceTiles {
   device::PooledBuffer mask_index_;
   device::PooledBuffer mask_weights_;
   device::PooledBuffer texel_weights_;
+  device::PooledBuffer fades_;
+  bool has_fades_ = false;
 };
 
 }  // namespace facezip::compress

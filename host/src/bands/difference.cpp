@@ -30,14 +30,17 @@ cl::Event launchDifference(device::DeviceContext& context, const DeviceTiles& ti
   if (tiles.tileCount() == 0) return {};
   device::requireBytes(context, samples, shape.sampleBytes(), "samples of a band");
   device::requireBytes(context, differences, differenceBufferBytes(shape, tiles.tileCount()), "differences of a band");
-  const cl::Kernel kernel =
-      context.kernel("difference.cl", "difference",
-                     fmt::format("{} {}{}", differenceDefines(shape), sampleDefines(shape.sample_type),
-                                 shape.neutral_decoded ? " -D NEUTRAL_DECODED" : ""));
-  return context.launch(kernel,
-                        device::WorkItems(kTileSide, tiles.tileCount(), shape.expressions)
-                            .inGroupsOf(context.workGroupSize(kernel, kTileSide), 1, 1),
-                        tiles.positions(), samples, neutral, differences, shape.width, shape.rows);
+  const cl::Kernel kernel = context.kernel(
+      "difference.cl", "difference",
+      fmt::format("{} {}{}{}", differenceDefines(shape), sampleDefines(shape.sample_type),
+                  shape.neutral_decoded ? " -D NEUTRAL_DECODED" : "", tiles.hasFades() ? " -D FADED" : ""));
+  const device::WorkItems items = device::WorkItems(kTileSide, tiles.tileCount(), shape.expressions)
+                                      .inGroupsOf(context.workGroupSize(kernel, kTileSide), 1, 1);
+  if (tiles.hasFades()) {
+    return context.launch(kernel, items, tiles.positions(), samples, neutral, tiles.fades(), differences, shape.width,
+                          shape.rows);
+  }
+  return context.launch(kernel, items, tiles.positions(), samples, neutral, differences, shape.width, shape.rows);
 }
 
 }  // namespace

@@ -15,11 +15,11 @@ namespace facezip::compress {
 std::size_t differenceBufferBytes(const BandShape& shape, std::size_t tile_count);
 
 /// Computes the differences of every tile, in units of 1/255 of full scale (8-bit samples: exact).
-/// Texels that hang over the image are 0. Returns the event of the kernel; does not wait.
-/// shape        what `samples` holds
-/// samples      shape.sampleBytes() bytes: [image][row][column][channel], image 0 is the neutral, n + 1 expression n
-/// differences  at least differenceBufferBytes(shape, tiles.tileCount()) bytes
-/// Throws DeviceError if a buffer is too small or the device fails.
+/// times the fades of the tiles where they have such (8-bit: rounded). Texels that hang over the image are 0. Returns
+/// the event of the kernel; does not wait. shape        what `samples` holds samples      shape.sampleBytes() bytes:
+/// [image][row][column][channel], image 0 is the neutral, n + 1 expression n differences  at least
+/// differenceBufferBytes(shape, tiles.tileCount()) bytes Throws DeviceError if a buffer is too small or the device
+/// fails.
 cl::Event computeDifferences(device::DeviceContext& context, const DeviceTiles& tiles, const BandShape& shape,
                              const cl::Buffer& samples, const cl::Buffer& differences);
 

@@ -38,22 +38,24 @@ MapSet openMaps(const Capture& capture) {
 }
 
 void makeRasters(MapSet& set, const geometry::TriangleMesh& mesh, std::span<const int> region,
-                 std::optional<int> gutter) {
+                 const Surroundings& surroundings) {
   std::map<std::pair<int, int>, std::shared_ptr<const raster::UvRaster>> rasters;
   for (OpenMap& map : set.maps) {
     const image::ImageShape& shape = map.samples->shape();
     auto& raster = rasters[{shape.width, shape.height}];
     if (!raster) {
-      const int reach = gutter.value_or(std::max(16, std::max(shape.width, shape.height) / 64));
-      raster = std::make_shared<raster::UvRaster>(mesh, region, shape.width, shape.height, reach);
+      const int side = std::max(shape.width, shape.height);
+      raster = std::make_shared<raster::UvRaster>(mesh, region, shape.width, shape.height,
+                                                  surroundings.gutter.value_or(std::max(16, side / 64)),
+                                                  surroundings.feather.value_or(side / 32));
     }
     map.raster = raster;
   }
 }
 
 void layOutMaps(MapSet& set, const geometry::TriangleMesh& mesh, std::span<const int> region,
-                std::optional<int> gutter) {
-  makeRasters(set, mesh, region, gutter);
+                const Surroundings& surroundings) {
+  makeRasters(set, mesh, region, surroundings);
   std::map<const raster::UvRaster*, std::shared_ptr<const raster::TexelClasses>> classes;
   for (OpenMap& map : set.maps) {
     auto& one = classes[map.raster.get()];

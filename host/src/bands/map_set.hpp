@@ -42,15 +42,20 @@ struct GridMap {
 /// Throws InputError: a texture that does not fit its neutral.
 MapSet openMaps(const Capture& capture);
 
+/// How far texels around the region are coded, in texels of each map.
+struct Surroundings {
+  std::optional<int> gutter;       ///< in gaps of the layout; none: max(16, side / 64)
+  std::optional<int> feather = 0;  ///< where the mesh goes on, fading out; none: side / 32
+};
+
 /// Makes one raster per size of the maps.
 /// mesh, region  as raster::UvRaster takes them
-/// gutter  texels; none: max(16, side / 64)
 void makeRasters(MapSet& set, const geometry::TriangleMesh& mesh, std::span<const int> region,
-                 std::optional<int> gutter);
+                 const Surroundings& surroundings);
 
 /// Makes rasters and classifies their texels, which passes with a gutter but without masks ask for.
 void layOutMaps(MapSet& set, const geometry::TriangleMesh& mesh, std::span<const int> region,
-                std::optional<int> gutter);
+                const Surroundings& surroundings);
 
 /// Texels of every map per weight cell, per axis, where the largest has `weight_scale`: all maps share one grid.
 /// Throws InputError: maps whose sizes do not share a grid at that scale.

@@ -9,6 +9,7 @@
 
 #include "blocks/block_format.hpp"
 #include "compress/attempt.hpp"
+#include "compress/border_steps.hpp"
 #include "compress/compress_options.hpp"
 #include "compress/compress_report.hpp"
 #include "compress/compress_stretch.hpp"
@@ -143,7 +144,12 @@ CompressReport compressCapture(const Capture& capture, const fs::path& package, 
   const GramSlots slots{masks.maskCount(), masks.overlappingPairs()};
   clock.book("masks");
 
-  layOutMaps(maps, model.face.mesh, model.face.region, options.gutter);
+  const auto layOut = [&](std::optional<int> feather) {
+    layOutMaps(maps, model.face.mesh, model.face.region, {options.gutter, feather});
+  };
+  layOut(options.feather.value_or(0));
+  std::optional<BorderSteps> border;
+  if (!options.feather) border.emplace(maps, model.face.mesh, model.face.region);
   std::optional<RateSearch> rates = searchRates(options, maps);
   std::optional<RateEstimate> sharing = rates ? std::nullopt : estimateWeightSets(options, maps);
   RateEstimate* const estimate = rates ? &rates->estimate() : sharing ? &*sharing : nullptr;
@@ -160,11 +166,19 @@ CompressReport compressCapture(const Capture& capture, const fs::path& package, 
   const int band_rows = memory.bandRows(first_form);
   clock.book("weight grid");
 
-  const auto observe = [estimate](std::size_t m, const MapBand& band) {
+  const auto observe = [estimate, &border](std::size_t m, const MapBand& band) {
     if (estimate != nullptr) estimate->addBand(m, band);
+    if (border) border->addBand(m, band);
   };
   const GramStage grams = accumulateGrams(groups, masks, slots, model.importance, band_rows, observe, run);
   if (estimate != nullptr) lookAgain(*estimate, maps, band_rows, run);
+  if (border && border->largest() >= kVisibleStep) {
+    layOut(std::nullopt);
+    progress.note(
+        fmt::format("at the region's border an expression differs by {:.1f} of 255: differences fade out over {} "
+                    "texels beyond it",
+                    border->largest(), maps.maps[maps.reference].raster->feather()));
+  }
 
   const CompressionJob job{capture, options, maps, model, masks, grams, memory, run};
   RateSearch* const search = rates ? &*rates : nullptr;
@@ -175,6 +189,7 @@ CompressReport compressCapture(const Capture& capture, const fs::path& package, 
     clock.book("mesh");
   }
   CompressReport report = makeReport(job, textures, slots, search, attempt);
+  report.border_step = border ? border->largest() : 0.0;
   report.package_disk_bytes = diskBytes(staged.path());
   staged.commit();
   clock.book("publishing");

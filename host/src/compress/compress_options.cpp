@@ -40,6 +40,8 @@ void requireSaneOptions(const CompressOptions& options) {
   require(io::isUtf8(options.region), "--region", "a name in UTF-8", io::quoted(options.region));
   require(io::isUtf8(options.importance), "--importance", "a name in UTF-8", io::quoted(options.importance));
   constexpr int kWidestGutter = 1024;  // the default of the largest textures
+  require(!options.feather || (*options.feather >= 0 && *options.feather <= kWidestGutter), "--feather", "0 to 1024",
+          fmt::format("{}", options.feather.value_or(0)));
   require(!options.gutter || (*options.gutter >= 0 && *options.gutter <= kWidestGutter), "--gutter", "0 to 1024",
           fmt::format("{}", options.gutter.value_or(0)));
 }

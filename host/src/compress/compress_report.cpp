@@ -44,6 +44,7 @@ CompressReport makeReport(const CompressionJob& job, const OpenTextures& texture
   report.differences = attempt.form.differences;
   report.weight_scale = attempt.form.weight_scale;
   report.weight_sets = attempt.form.weights_per_map ? static_cast<int>(job.maps.maps.size()) : 1;
+  report.feather = job.maps.maps[job.maps.reference].raster->feather();
   report.covered_texels = job.grams.covered_texels.front();
   reportMasks(job.model.masks, slots, report);
   reportPermutation(attempt.permutation, report);

@@ -38,6 +38,7 @@ std::string methodJson(const CompressOptions& options, const PackageForm& form, 
                  {"unit", options.unit.value_or("")}};
   if (options.masks) record["masks"] = *options.masks;
   if (options.gutter) record["gutter"] = *options.gutter;
+  if (options.feather) record["feather"] = *options.feather;
   if (form.blocks) {
     record["texture_format"] = blockFormatName(form.blocks->neutral);
     record["difference_format"] = blockFormatName(form.blocks->differences);
@@ -70,6 +71,7 @@ CompressOptions optionsFromMethodJson(const std::string& json_text, const std::s
     if (const std::string unit = record.at("unit").get<std::string>(); !unit.empty()) options.unit = unit;
     if (record.contains("masks")) options.masks = record["masks"].get<int>();
     if (record.contains("gutter")) options.gutter = record["gutter"].get<int>();
+    if (record.contains("feather")) options.feather = record["feather"].get<int>();
     if (record.contains("texture_format")) {
       options.texture_format = blockFormatOf(record["texture_format"].get<std::string>(), file);
       options.difference_format = blockFormatOf(record.at("difference_format").get<std::string>(), file);

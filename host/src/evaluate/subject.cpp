@@ -135,7 +135,7 @@ void requireSameShape(const compress::OpenMap& map, const PackageMap& packed, co
 
 compress::MapSet openMaps(const Subject& subject) {
   compress::MapSet maps = compress::openMaps(subject.capture);
-  compress::makeRasters(maps, subject.face.mesh, subject.face.region, 0);
+  compress::makeRasters(maps, subject.face.mesh, subject.face.region, {.gutter = 0});
   return maps;
 }
 

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -36,14 +37,15 @@ std::int64_t lastOf(int a, int b, const RowOffset* offsets) {
 class Gutter {
  public:
   Gutter(std::span<const TexelSample> covered, int width, int covered_begin, int covered_end, int begin, int end,
-         int gutter)
+         const Reaches& reaches)
       : covered_(covered),
         width_(width),
         covered_begin_(covered_begin),
         covered_end_(covered_end),
         begin_(begin),
         end_(end),
-        gutter_(gutter),
+        reaches_(reaches),
+        farthest_(std::max(reaches.gutter, reaches.feather)),
         offsets_(toSize(end - begin, width), kFar) {}
 
   void fill(std::span<TexelSample> samples) {
@@ -65,7 +67,7 @@ class Gutter {
         if (coveredAt(row, x).kind == TexelSample::Kind::kCovered) at = row;
         if (row < begin_ || row >= end_) continue;
         RowOffset& offset = offsets_[index(row - begin_, x)];
-        if (std::abs(at - row) <= gutter_ && std::abs(at - row) < std::abs(int{offset})) {
+        if (std::abs(at - row) <= farthest_ && std::abs(at - row) < std::abs(int{offset})) {
           offset = static_cast<RowOffset>(at - row);
         }
       }
@@ -98,11 +100,32 @@ class Gutter {
       while (next + 1 < sites.size() && sites[next + 1].first <= x) ++next;
       TexelSample& sample = samples[toSize(x)];
       const int site = sites[next].site;
-      if (sample.kind != TexelSample::Kind::kEmpty) continue;
-      if (distance2(x, site, offsets) > std::int64_t{gutter_} * gutter_) continue;
+      const bool outside = sample.kind == TexelSample::Kind::kOutside;
+      if (sample.kind != TexelSample::Kind::kEmpty && !outside) continue;
+      const std::int64_t reach = outside ? reaches_.feather : reaches_.gutter;
+      const std::int64_t distance = distance2(x, site, offsets);
+      if (distance > reach * reach || (outside && crossesGap(row, x, row + offsets[site], site))) continue;
       sample = coveredAt(row + offsets[site], site);
-      sample.kind = TexelSample::Kind::kGutter;
+      sample.kind = outside ? TexelSample::Kind::kFeather : TexelSample::Kind::kGutter;
+      if (outside) sample.fade = fadeAt(std::sqrt(static_cast<double>(distance)));
     }
+  }
+
+  /// Whether a texel of no triangle lies between two: they are not neighbours on the surface then.
+  bool crossesGap(int row, int column, int to_row, int to_column) const {
+    const int steps = std::max(std::abs(to_row - row), std::abs(to_column - column));
+    for (int i = 1; i < steps; ++i) {
+      const double share = static_cast<double>(i) / steps;
+      const int y = static_cast<int>(std::lround(row + share * (to_row - row)));
+      const int x = static_cast<int>(std::lround(column + share * (to_column - column)));
+      if (coveredAt(y, x).kind == TexelSample::Kind::kEmpty) return true;
+    }
+    return false;
+  }
+
+  std::uint8_t fadeAt(double distance) const {
+    const double t = distance / (reaches_.feather + 1.0);
+    return static_cast<std::uint8_t>(std::lround(255.0 * (1.0 - t * t * (3.0 - 2.0 * t))));
   }
 
   std::span<const TexelSample> covered_;
@@ -111,15 +134,17 @@ class Gutter {
   int covered_end_;
   int begin_;
   int end_;
-  int gutter_;
+  Reaches reaches_;
+  int farthest_;
   std::vector<RowOffset> offsets_;  ///< of rows [begin, end)
 };
 
 }  // namespace
 
 void fillGutter(std::span<const TexelSample> covered, int width, int covered_begin, int covered_end, int begin, int end,
-                int gutter, std::span<TexelSample> samples) {
-  if (gutter > 0) Gutter(covered, width, covered_begin, covered_end, begin, end, gutter).fill(samples);
+                const Reaches& reaches, std::span<TexelSample> samples) {
+  if (reaches.gutter <= 0 && reaches.feather <= 0) return;
+  Gutter(covered, width, covered_begin, covered_end, begin, end, reaches).fill(samples);
 }
 
 }  // namespace facezip::raster

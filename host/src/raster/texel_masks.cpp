@@ -22,6 +22,18 @@ void append(TileMasks& whole, const TileMasks& part) {
   whole.mask_index.insert(whole.mask_index.end(), part.mask_index.begin(), part.mask_index.end());
   whole.mask_weights.insert(whole.mask_weights.end(), part.mask_weights.begin(), part.mask_weights.end());
   whole.texel_weights.insert(whole.texel_weights.end(), part.texel_weights.begin(), part.texel_weights.end());
+  whole.fades.insert(whole.fades.end(), part.fades.begin(), part.fades.end());
+}
+
+float fadeOf(std::uint8_t fade) { return static_cast<float>(fade) * (1.0f / 255.0f); }
+
+/// The fades of a tile of rows [begin, end).
+void appendFades(const TexelClasses& classes, TilePosition tile, int begin, int end, std::vector<float>& fades) {
+  for (int t = 0; t < kTileTexels; ++t) {
+    const int x = tile.x * kTileSide + t % kTileSide;
+    const int y = begin + tile.y * kTileSide + t / kTileSide;
+    fades.push_back(x < classes.width() && y < end ? fadeOf(classes.fade(x, y)) : 1.0f);
+  }
 }
 
 /// 1 for each bit of 16 that is set, else 0.
@@ -94,19 +106,22 @@ void TexelMasks::Cursor::moveTo(int triangle) {
 }
 
 void TexelMasks::addTile(const std::vector<TexelSample>& samples, int width, int rows, TilePosition position,
-                         Cursor& cursor, std::vector<float>& scratch, TileMasks& out) const {
+                         Cursor& cursor, std::vector<float>& scratch, bool fades, TileMasks& out) const {
   const int x_end = std::min(width, (position.x + 1) * kTileSide);
   const int y_end = std::min(rows, (position.y + 1) * kTileSide);
   // scratch holds [mask][256] for every mask and is all zero between calls.
   std::vector<int> active;
   std::vector<char> is_active(toSize(masks_.mask_count), 0);
   std::array<float, kTileTexels> texel_weights{};
+  std::array<float, kTileTexels> fade;
+  fade.fill(1.0f);
   for (int y = position.y * kTileSide; y < y_end; ++y) {
     for (int x = position.x * kTileSide; x < x_end; ++x) {
       const TexelSample& sample = samples[toSize(y, width) + toSize(x)];
       if (sample.triangle < 0) continue;
       const auto t = toSize((y - position.y * kTileSide) * kTileSide + (x - position.x * kTileSide));
       if (sample.kind == TexelSample::Kind::kCovered) texel_weights[t] = 1.0f;
+      fade[t] = fadeOf(sample.fade);
       for (const Corners& corners : cursor.at(sample.triangle)) {
         const auto mask = toSize(corners.mask);
         const float value = corners.at(sample);
@@ -129,16 +144,20 @@ void TexelMasks::addTile(const std::vector<TexelSample>& samples, int width, int
   }
   out.mask_begin.push_back(static_cast<int>(out.mask_index.size()));
   out.texel_weights.insert(out.texel_weights.end(), texel_weights.begin(), texel_weights.end());
+  if (fades) out.fades.insert(out.fades.end(), fade.begin(), fade.end());
 }
 
 TileMasks TexelMasks::tiles(const UvRaster& raster, int begin, int end, Texels texels) const {
   const std::vector<TexelSample> samples =
       texels == Texels::kCovered ? raster.coveredRows(begin, end) : raster.rows(begin, end);
   const int tile_columns = tilesAlong(raster.width());
+  const bool fades = texels == Texels::kCoveredAndGutter && raster.feather() > 0;
   return tilesByRows(end - begin, [&](int y, TileMasks& out) {
     Cursor cursor(*this);
     std::vector<float> scratch(toSize(masks_.mask_count) * kTileTexels, 0.0f);
-    for (int x = 0; x < tile_columns; ++x) addTile(samples, raster.width(), end - begin, {x, y}, cursor, scratch, out);
+    for (int x = 0; x < tile_columns; ++x) {
+      addTile(samples, raster.width(), end - begin, {x, y}, cursor, scratch, fades, out);
+    }
   });
 }
 
@@ -182,6 +201,7 @@ TileMasks activeTiles(const TexelClasses& classes, int begin, int end) {
       out.mask_weights.insert(out.mask_weights.end(), active.begin(), active.end());
       out.mask_begin.push_back(static_cast<int>(out.mask_index.size()));
       out.texel_weights.insert(out.texel_weights.end(), covered.begin(), covered.end());
+      if (classes.fades()) appendFades(classes, tile, begin, end, out.fades);
     });
   });
 }

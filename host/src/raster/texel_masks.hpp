@@ -66,7 +66,7 @@ class TexelMasks {
 
  private:
   void addTile(const std::vector<TexelSample>& samples, int width, int rows, TilePosition position, Cursor& cursor,
-               std::vector<float>& scratch, TileMasks& out) const;
+               std::vector<float>& scratch, bool fades, TileMasks& out) const;
 
   const geometry::TriangleMesh& mesh_;
   const geometry::RegionMesh& region_;
@@ -77,8 +77,8 @@ class TexelMasks {
 /// need.
 TileMasks coverageTiles(const UvRaster& raster, int begin, int end);
 
-/// The tiles of rows [begin, end) that hold covered or gutter texels, each with one mask (index 0): 1 at those texels,
-/// 0 elsewhere. Texel weights are 1 at the covered ones.
+/// The tiles of rows [begin, end) that hold covered, gutter or feather texels, each with one mask (index 0): 1 at those
+/// texels, 0 elsewhere. Texel weights are 1 at the covered ones.
 TileMasks activeTiles(const TexelClasses& classes, int begin, int end);
 
 }  // namespace facezip::raster

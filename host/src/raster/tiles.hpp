@@ -29,6 +29,7 @@ struct TileMasks {
   std::vector<int> mask_index;       ///< rising inside a tile; values in [0, K)
   std::vector<float> mask_weights;   ///< mask_index.size() x 256, M_k(p) in [0, 1], also in the gutter
   std::vector<float> texel_weights;  ///< #tiles x 256, weight of a texel in every sum; 0 if not covered (gutter too)
+  std::vector<float> fades;          ///< #tiles x 256, factor of a texel's differences; empty where all are 1
 };
 
 /// Two masks k < l that are both above zero at one texel or more.

@@ -18,8 +18,9 @@ constexpr double kEdgeSlack = 1e-9;
 
 }  // namespace
 
-UvRaster::UvRaster(const geometry::TriangleMesh& mesh, std::span<const int> region, int width, int height, int gutter)
-    : width_(width), height_(height), gutter_(gutter) {
+UvRaster::UvRaster(const geometry::TriangleMesh& mesh, std::span<const int> region, int width, int height, int gutter,
+                   int feather)
+    : width_(width), height_(height), gutter_(gutter), feather_(feather) {
   assert(mesh.uv_triangles.rows() == mesh.triangles.rows());
   std::vector<bool> in_region(toSize(mesh.triangles.rows()), false);
   for (const int triangle : region) in_region[toSize(triangle)] = true;
@@ -89,13 +90,13 @@ std::vector<TexelSample> UvRaster::coveredRows(int begin, int end) const {
 
 std::vector<TexelSample> UvRaster::rows(int begin, int end) const {
   assert(0 <= begin && begin <= end && end <= height_);
-  // The gutter of a band reaches for covered texels in the rows above and below it.
-  const int covered_begin = std::max(0, begin - gutter_);
-  const int covered_end = std::min(height_, end + gutter_);
+  // Gutter and feather of a band reach for covered texels in the rows above and below it.
+  const int covered_begin = std::max(0, begin - reach());
+  const int covered_end = std::min(height_, end + reach());
   const std::vector<TexelSample> covered = coveredRows(covered_begin, covered_end);
   const auto offset = [&](int row) { return static_cast<std::ptrdiff_t>(row - covered_begin) * width_; };
   std::vector<TexelSample> samples(covered.begin() + offset(begin), covered.begin() + offset(end));
-  fillGutter(covered, width_, covered_begin, covered_end, begin, end, gutter_, samples);
+  fillGutter(covered, width_, covered_begin, covered_end, begin, end, {gutter_, feather_}, samples);
   return samples;
 }
 

@@ -133,6 +133,7 @@ std::string toJson(const CompressReport& report) {
       {"differences", report.differences},
       {"weight_scale", report.weight_scale},
       {"weight_sets", report.weight_sets},
+      {"border", {{"step", report.border_step}, {"feather", report.feather}}},
       {"rate_curve", json::array()},
       {"rmse", json::object()},
       {"refinement", {{"squared_errors", report.refinement_errors}}},

@@ -32,7 +32,7 @@ const compress::GridMap& firstMapOf(const Package& package, const PackageMaps& m
 
 PackageMaps openPackageMaps(const Capture& capture, const compress::Face& face, const Package& package) {
   PackageMaps maps{compress::openMaps(capture), {}};
-  compress::makeRasters(maps.set, face.mesh, face.region, 0);
+  compress::makeRasters(maps.set, face.mesh, face.region, {.gutter = 0});
   for (std::size_t m = 0; m < maps.set.maps.size(); ++m) {
     compress::OpenMap& map = maps.set.maps[m];
     maps.maps.push_back({&map, m, map.metric_weight, package.maps()[m].weight_scale});

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "facezip/block_size.hpp"
 #include "facezip/check.hpp"
 #include "facezip/package.hpp"
 #include "facezip/printable.hpp"
@@ -43,6 +44,18 @@ std::string storage(const PackageMap& map) {
                      difference.empty() ? fmt::format("{} bits", map.difference_bits) : difference);
 }
 
+/// What a GPU gets of a map's textures in blocks; nothing of images.
+void printBlocks(const PackageMap& map) {
+  const auto print = [&](const std::string& textures, const std::optional<BlockFormat>& format) {
+    if (!format) return;
+    const BlockSize block = blockSize(*format);
+    say("    {}: {}, {} x {} texels in {} bytes, {} without mip levels\n", textures, blockFormatName(*format),
+        block.width, block.height, block.bytes, formatMegabytes(blockTextureBytes(*format, map.width, map.height)));
+  };
+  print(map.neutral_file, map.neutral_format);
+  for (const PackageDifference& difference : map.differences) print(difference.file, difference.format);
+}
+
 void printPackage(const Package& package) {
   const auto plural = [](std::size_t count) { return count == 1 ? "" : "s"; };
   const std::size_t expressions = package.expressions().size();
@@ -53,6 +66,7 @@ void printPackage(const Package& package) {
     say("  map {}: {} x {}, {} channel{}, {}{}{}{}, {} texels to a weight texel\n", map.name, map.width, map.height,
         map.channels, map.channels == 1 ? "" : "s", sampleName(map.sample_type), map.colour_space.empty() ? "" : ", ",
         map.colour_space, storage(map), map.weight_scale);
+    printBlocks(map);
   }
   for (std::size_t set = 0; set < package.weightSets().size(); ++set) printWeights(package, set);
   say("  memory: {} at run time, {} on disk\n", formatMegabytes(package.bytesInMemory()),

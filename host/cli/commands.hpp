@@ -12,6 +12,7 @@ struct CommonOptions {
 
 void addSynthCommand(CLI::App& app, const CommonOptions& common);
 void addCompressCommand(CLI::App& app, const CommonOptions& common);
+void addConvertCommand(CLI::App& app, const CommonOptions& common);
 void addReconstructCommand(CLI::App& app, const CommonOptions& common);
 void addBlendCommand(CLI::App& app, const CommonOptions& common);
 void addEvaluateCommand(CLI::App& app, const CommonOptions& common);

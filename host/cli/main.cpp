@@ -97,6 +97,7 @@ int main(int argc, char** argv) {
   app.fallthrough();
   addSynthCommand(app, common);
   addCompressCommand(app, common);
+  addConvertCommand(app, common);
   addReconstructCommand(app, common);
   addBlendCommand(app, common);
   addEvaluateCommand(app, common);

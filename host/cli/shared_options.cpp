@@ -18,17 +18,22 @@ std::vector<BlockFormat> formatChoice(const std::string& name) {
 
 void parseTextureFormat(const std::string& name, CompressOptions& options) {
   options.format_choice = formatChoice(name);
-  if (name == "png" || !options.format_choice.empty()) return;
-  try {
-    options.texture_format = blockFormatOf(name, "--texture-format");
-  } catch (const InputError& error) {
-    InputError::Parts parts = error.parts();
-    parts.expected = "png, or bc or astc with a budget or target, or " + parts.expected;
-    throw InputError(parts);
-  }
+  if (!options.format_choice.empty()) return;
+  options.texture_format = parseBlockFormat(name, "bc or astc with a budget or target, or ");
 }
 
 }  // namespace
+
+std::optional<BlockFormat> parseBlockFormat(const std::string& name, const std::string& also) {
+  if (name == "png") return std::nullopt;
+  try {
+    return blockFormatOf(name, "--texture-format");
+  } catch (const InputError& error) {
+    InputError::Parts parts = error.parts();
+    parts.expected = "png, or " + also + parts.expected;
+    throw InputError(parts);
+  }
+}
 
 void addPackageOutputOption(CLI::App& command, std::string& output) {
   command.add_option("-o,--output", output, "Directory of the package; an earlier package there is replaced")
@@ -123,6 +128,11 @@ void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
                   "Block format of the difference textures, where it is to be another")
       ->type_name("FORMAT")
       ->needs(format);
+  command
+      .add_option("--neutral", arguments.neutral_texture,
+                  "captured: as it is; best: where no expression changes anything, the mean of all scans")
+      ->check(CLI::IsMember(allNames<NeutralTexture>()))
+      ->capture_default_str();
   CLI::Option* sets =
       command
           .add_option(
@@ -186,6 +196,7 @@ void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
 CompressOptions parseCompressOptions(const CompressArguments& arguments) {
   CompressOptions options = arguments.options;
   options.method = *findNamed<Method>(arguments.method);  // CLI11 has checked it
+  options.neutral_texture = *findNamed<NeutralTexture>(arguments.neutral_texture);
   options.weight_sets = *findNamed<WeightSets>(arguments.weight_sets);
   options.permutation_solver = *findNamed<PermutationSolver>(arguments.permutation_solver);
   try {

@@ -30,11 +30,15 @@ void addEyesOption(CLI::App& command, std::string& eyes);
 /// The maps of a package, to open its capture with: other folders of that do not matter then.
 std::vector<std::string> mapNames(const Package& package);
 
+/// The value of --texture-format: none for "png". Throws InputError. also  further names, for the message
+std::optional<BlockFormat> parseBlockFormat(const std::string& name, const std::string& also = "");
+
 /// The texts behind CompressOptions, before they are parsed.
 struct CompressArguments {
   std::string method = "refined";
   std::string permutation_solver = "best";
   std::string weight_sets = "auto";
+  std::string neutral_texture = "captured";
   std::string texture_format = "png";
   std::string difference_format;
   std::string mask_radius = "3cm";

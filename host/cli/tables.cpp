@@ -177,6 +177,24 @@ void printCompressReport(const CompressReport& report) {
   say("{:<34}{:>10.2f}\n", "  decoding, beside the work", report.decode_seconds);
 }
 
+void printConvertReport(const ConvertReport& report) {
+  say("{:<20}{:<28}{:>12}{:>12}{:>20}\n", "", "textures", "before", "now", "RMSE to before");
+  for (const ConvertReport::Map& map : report.maps) {
+    const auto name = [](const std::optional<BlockFormat>& format) {
+      return std::string(format ? blockFormatName(*format) : "images");
+    };
+    std::string formats = name(map.texture_format);
+    if (map.difference_format != map.texture_format) formats += ", differences " + name(map.difference_format);
+    say("{:<20}{:<28}{:>12}{:>12}{:>20.3f}\n", map.name, formats, formatMegabytes(map.bytes_before),
+        formatMegabytes(map.bytes_after), map.rmse);
+  }
+  say("{:<48}{:>12}{:>12}\n", "run-time memory, with weights", formatMegabytes(report.memory_before),
+      formatMegabytes(report.memory_after));
+  say("{:<48}{:>12}{:>12}\n\n", "package on disk", formatMegabytes(report.disk_before),
+      formatMegabytes(report.disk_after));
+  printSeconds(report.seconds);
+}
+
 void printEvaluation(const Evaluation& evaluation) {
   say("package: {} method, C = {}\n", evaluationTitle(evaluation.method), evaluation.differences);
   for (const Evaluation::Map& map : evaluation.maps) {

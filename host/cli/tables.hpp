@@ -3,6 +3,7 @@
 
 #include "facezip/alignment.hpp"
 #include "facezip/compress.hpp"
+#include "facezip/convert.hpp"
 #include "facezip/evaluate.hpp"
 #include "facezip/learn.hpp"
 #include "facezip/registration.hpp"
@@ -11,6 +12,8 @@
 namespace facezip::cli {
 
 void printCompressReport(const CompressReport& report);
+/// Formats, bytes and distance of the frames of every map; memory, times.
+void printConvertReport(const ConvertReport& report);
 /// RMSE by expression and method of every map, texel errors, angles of normals, blends and the ablation where there is
 /// one; then memory, then times.
 void printEvaluation(const Evaluation& evaluation);

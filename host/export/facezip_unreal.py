@@ -22,10 +22,10 @@ def import_files(files, destination):
     unreal.AssetToolsHelpers.get_asset_tools().import_asset_tasks(tasks)
 
 
-def keep_samples(texture, weights):
-    """Samples as they are stored: the material converts what it has blended."""
+def keep_samples(texture, weights, compression):
+    """Samples as they are stored: the material converts what it has blended. What was in blocks is coded again."""
     for name, value in (("srgb", False),
-                        ("compression_settings", unreal.TextureCompressionSettings.TC_VECTOR_DISPLACEMENTMAP),
+                        ("compression_settings", getattr(unreal.TextureCompressionSettings, compression)),
                         ("address_x", unreal.TextureAddress.TA_CLAMP),
                         ("address_y", unreal.TextureAddress.TA_CLAMP),
                         ("flip_green_channel", False)):
@@ -98,7 +98,7 @@ def main():
         texture = unreal.EditorAssetLibrary.load_asset(f"{destination}/{name}")
         if texture is None:
             raise RuntimeError(f"facezip: {name}.png was not imported")
-        keep_samples(texture, name.startswith("weights_"))
+        keep_samples(texture, name.startswith("weights_"), face["compression"].get(name, "TC_VECTOR_DISPLACEMENTMAP"))
         unreal.EditorAssetLibrary.save_loaded_asset(texture)
     import_files([os.path.join(HERE, "scene.gltf")], destination)
     build_material(face, destination)

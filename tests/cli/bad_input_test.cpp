@@ -408,7 +408,8 @@ TEST_F(BadInput, PackagesWhoseImagesCannotBeDecoded) {
   std::string image = test::contentsOf(package() / "albedo/difference_1.png");
   image[image.find("IDAT") + 8] ^= 0x10;
   io::writeTextFile(package() / "albedo/difference_1.png", image);
-  for (const char* command : {"info ", "export --target gltf --output out ", "view --output out "}) {
+  for (const char* command : {"info ", "export --target gltf --output out ", "view --output out ",
+                              "convert --texture-format bc7 --output out "}) {
     const test::CommandResult result = runFacezip(command + quoted(package()), "cd " + quoted(folder_.path()) + " &&");
     EXPECT_EQ(result.exit_code, cli::kExitInput) << command;
     EXPECT_THAT(result.error, HasSubstr("albedo/difference_1.png")) << command;

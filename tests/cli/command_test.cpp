@@ -348,10 +348,39 @@ TEST_F(Command, InfoDevicesVersionAndHelp) {
   EXPECT_THAT(sets, HasSubstr("  weights of normal: "));
   EXPECT_THAT(runFacezip("devices").out, HasSubstr("0:0"));
   EXPECT_THAT(runFacezip("--version").out, HasSubstr("facezip "));
-  for (const char* command : {"synth", "compress", "reconstruct", "blend", "evaluate", "info", "devices", "demo"}) {
+  for (const char* command :
+       {"synth", "compress", "reconstruct", "blend", "evaluate", "convert", "info", "devices", "demo"}) {
     const test::CommandResult help = runFacezip(std::string(command) + " --help");
     EXPECT_EQ(help.exit_code, 0) << command;
     EXPECT_THAT(help.out, HasSubstr("--help")) << command;
+  }
+}
+
+TEST_F(Command, ConvertSaysWhatItGainsAndWhatItCosts) {
+  const test::TemporaryDirectory out;
+  const std::string convert = "convert " + quoted(package()) + " --output " + quoted(out / "blocks");
+  const test::CommandResult result = runFacezip(
+      convert + " --texture-format astc-5x5 --difference-format astc-6x6 --report " + quoted(out / "r.json"));
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  EXPECT_EQ(result.error, "");
+  EXPECT_THAT(result.out, HasSubstr("astc-5x5, differences astc-6x6"));
+  EXPECT_THAT(result.out, HasSubstr("RMSE to before"));
+  const json report = readJson(out / "r.json");
+  EXPECT_EQ(report["facezip_report"], "convert");
+  EXPECT_EQ(report["maps"]["normal"]["difference_format"], "astc-6x6");
+  EXPECT_GT(report["maps"]["albedo"]["rmse"].get<double>(), 0.0);
+  EXPECT_LT(report["bytes"]["memory"]["after"].get<int>(), report["bytes"]["memory"]["before"].get<int>());
+  EXPECT_THAT(
+      runFacezip("info " + quoted(out / "blocks")).out,
+      testing::AllOf(HasSubstr("neutral in astc-5x5 blocks"),
+                     HasSubstr("albedo/difference_3.ktx2: astc-6x6, 6 x 6 texels in 16 bytes, 0.00 MB without mip")));
+
+  EXPECT_EQ(runFacezip(convert).exit_code, cli::kExitUsage) << "no format";
+  for (const char* format : {"bc9", "bc", "astc", "png --difference-format bc7", "bc5", "png"}) {
+    const test::CommandResult refused = runFacezip("convert " + quoted(package()) + " --output " +
+                                                   quoted(out / "refused") + " --texture-format " + format);
+    EXPECT_EQ(refused.exit_code, cli::kExitInput) << format;
+    EXPECT_FALSE(fs::exists(out / "refused")) << format;
   }
 }
 

@@ -32,6 +32,9 @@ class Export : public testing::Test {
     compress("crowd", {.expressions = 100, .width = 40, .height = 40}, " --differences 5");
     compress("floats", {.expressions = 5, .type = image::SampleType::kFloat32, .extension = "exr"});
     compress("deep", {.expressions = 5, .type = image::SampleType::kUint16});
+    compress("bc7", {.expressions = 5}, " --texture-format bc7");
+    compress("odd", {.expressions = 5, .width = 78}, " --texture-format bc7");
+    compress("astc", {.expressions = 5}, " --texture-format astc-6x6 --difference-format astc-8x5");
   }
   static void TearDownTestSuite() { delete folder_; }
 
@@ -121,6 +124,46 @@ TEST_F(Export, SaysWhatAnEngineDoesNotGet) {
   EXPECT_EQ(exportTo("deep", "gltf", folder() / "deep_gltf").error, "") << "a package is copied as it is";
 }
 
+TEST_F(Export, BlocksStayWhereATargetTakesThem) {
+  const auto exported = [&](const std::string& package, const std::string& target) {
+    const fs::path out = folder() / (package + "_to_" + target);
+    const test::CommandResult result = exportTo(package, target, out);
+    EXPECT_EQ(result.exit_code, 0) << target << ": " << result.error;
+    return std::pair(out, result.error);
+  };
+  for (const std::string target : {"gltf", "three"}) {
+    const auto& [out, notes] = exported("astc", target);
+    EXPECT_EQ(contentsOf(out / "package/albedo/difference_0.ktx2"),
+              contentsOf(folder() / "astc/albedo/difference_0.ktx2"));
+    const nlohmann::json scene = nlohmann::json::parse(contentsOf(out / "scene.gltf"));
+    EXPECT_EQ(scene["images"][0]["uri"], "textures/albedo_neutral.png") << "glTF knows no blocks";
+    EXPECT_EQ(image::readImage(out / "textures/albedo_neutral.png").shape.width, 80);
+    EXPECT_EQ(notes, "");
+  }
+  // Unity: of ASTC the square blocks, of BC whole ones.
+  const auto& [unity, none] = exported("bc7", "unity");
+  EXPECT_EQ(contentsOf(unity / "textures/albedo_neutral.fzktx2"), contentsOf(folder() / "bc7/albedo/neutral.ktx2"));
+  EXPECT_FALSE(fs::exists(unity / "textures/albedo_neutral.png"));
+  EXPECT_EQ(none, "");
+  const auto& [mixed, said] = exported("astc", "unity");
+  EXPECT_TRUE(fs::exists(mixed / "textures/albedo_neutral.fzktx2"));
+  EXPECT_TRUE(fs::exists(mixed / "textures/albedo_difference_0.png"));
+  EXPECT_THAT(said, HasSubstr("albedo: its astc-8x5 blocks are decoded to PNG"));
+  EXPECT_THAT(contentsOf(mixed / "FaceZip.hlsl"), HasSubstr("neutral.Sample(state, from_top)"));
+  EXPECT_THAT(contentsOf(mixed / "FaceZip.hlsl"), HasSubstr("difference_0.Sample(state, uv)"));
+  EXPECT_TRUE(fs::exists(exported("odd", "unity").first / "textures/albedo_neutral.png"));
+  // Those that take no blocks get images.
+  const fs::path blender = exported("bc7", "blender").first;
+  EXPECT_TRUE(fs::exists(blender / "package/albedo/neutral.png"));
+  EXPECT_EQ(Package::open(blender / "package").maps()[0].neutral_format, std::nullopt);
+  const auto& [unreal, again] = exported("bc7", "unreal");
+  const nlohmann::json face = nlohmann::json::parse(contentsOf(unreal / "FaceZip.json"));
+  EXPECT_EQ(face["compression"]["albedo_neutral"], "TC_BC7");
+  EXPECT_FALSE(face["compression"].contains("weights_0_0"));
+  EXPECT_THAT(again, HasSubstr("which Unreal codes again"));
+  EXPECT_THAT(exported("astc", "godot").second, HasSubstr("which Godot 3 keeps uncompressed"));
+}
+
 TEST_F(Export, MapsMayShareFiles) {
   const fs::path shared = folder() / "shared";
   fs::copy(folder() / "face", shared, fs::copy_options::recursive);
@@ -168,6 +211,12 @@ TEST_F(Export, CancelledLeavesNothing) {
   for (const std::string& target : exportTargets()) {
     CancelledAtOnce progress;
     EXPECT_THROW(exportPackage(package, target, out / "to", progress), Cancelled) << target;
+    EXPECT_TRUE(fs::is_empty(out.path())) << target;
+  }
+  const Package blocks = Package::open(folder() / "bc7");
+  for (const std::string& target : exportTargets()) {
+    CancelledAtOnce progress;
+    EXPECT_THROW(exportPackage(blocks, target, out / "to", progress), Cancelled) << target;
     EXPECT_TRUE(fs::is_empty(out.path())) << target;
   }
   CancelledAtOnce progress;

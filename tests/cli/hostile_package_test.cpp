@@ -55,6 +55,7 @@ class HostilePackage : public testing::Test {
             "export " + p + " --target unity --output " + out,
             "export " + p + " --target godot --output " + out,
             "view " + p + " --output " + out,
+            "convert " + p + " --texture-format bc7 --output " + out,
             "evaluate " + quoted(*made_ / "capture") + " " + p + " --baselines none --blends 0"};
   }
 
@@ -86,7 +87,7 @@ class HostilePackage : public testing::Test {
 };
 test::TemporaryDirectory* HostilePackage::made_ = nullptr;
 
-const std::vector<std::string> kOfMeshes = {"info", "export", "view"};
+const std::vector<std::string> kOfMeshes = {"info", "export", "view", "convert"};
 
 std::vector<std::string> thoseOf(const std::vector<std::string>& commands, const std::vector<std::string>& names) {
   std::vector<std::string> chosen;

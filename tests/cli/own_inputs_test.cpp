@@ -69,6 +69,15 @@ TEST_F(OwnInputs, Compress) {
   expectRefusal(compress() + " -o " + q("face") + " --importance " + q("face/masks.png"));
 }
 
+TEST_F(OwnInputs, Convert) {
+  const std::string convert = "convert " + q("face") + " --texture-format bc7 -o ";
+  for (const char* output : {"face", "face-link", "face/albedo", "face/blocks", "."})
+    expectRefusal(convert + q(output));
+  for (const char* report : {"face/package.json", "face/r.json", "package", "package/r.json"}) {
+    expectRefusal(convert + q("package") + " --report " + q(report));
+  }
+}
+
 TEST_F(OwnInputs, Align) {
   for (const char* output : {"capture", "capture/aligned", "link/aligned", "."}) {
     expectRefusal("align " + q("capture") + " -o " + q(output));

@@ -128,7 +128,7 @@ TEST(EngineMaps, ShadersReadGrayAndAlphaWhereImportersPutThem) {
   EXPECT_THAT(godot, HasSubstr("vec4(codes.ra, 0.0, 0.0)"));
   EXPECT_THAT(godot, HasSubstr("value = vec4(value.ra, 0.0, 0.0)"));
   EXPECT_THAT(godot, HasSubstr("value = vec4(value.r, 0.0, 0.0, 0.0)"));
-  const std::string hlsl = exporting::hlslFunctions(package, maps, exporting::Rows::kFromTop, "");
+  const std::string hlsl = exporting::hlslFunctions(package, maps, exporting::Rows::kFromTop, "", exporting::noBlocks);
   EXPECT_THAT(hlsl, HasSubstr(".xwyz;"));
 }
 

@@ -73,6 +73,11 @@ static void check_refusals(facezip_package* package) {
   const float bad[2] = {0.0f, NAN};
   unsigned char frame[128];
   facezip_map_info info;
+  facezip_texture_info texture;
+  texture.struct_size = sizeof(texture);
+  CHECK(facezip_get_texture_info(package, 0, 1, &texture) == FACEZIP_OK && texture.bytes == 128);
+  CHECK_FAILS(facezip_read_level(package, 0, 0, 0, frame, 128), FACEZIP_ERROR_ARGUMENT, "facezip_open");
+  CHECK_FAILS(facezip_read_weights(package, 0, frame, 8), FACEZIP_ERROR_ARGUMENT, "facezip_open");
   info.struct_size = 1;
   CHECK_FAILS(facezip_get_map_info(package, 0, &info), FACEZIP_ERROR_ARGUMENT, "struct_size");
   CHECK_FAILS(facezip_get_map_info(package, 2, &info), FACEZIP_ERROR_ARGUMENT, "0 to 1");
@@ -85,6 +90,62 @@ static void check_refusals(facezip_package* package) {
   CHECK_FAILS(facezip_blend(package, 0, frame, 127), FACEZIP_ERROR_ARGUMENT, "expected 128");
   CHECK_FAILS(facezip_blend(package, 0, NULL, 128), FACEZIP_ERROR_ARGUMENT, "null");
   CHECK_FAILS(facezip_blend(NULL, 0, frame, 128), FACEZIP_ERROR_ARGUMENT, "null");
+}
+
+/* Textures and weight maps as the package stores them, of one that is on no device. */
+static void check_files(const char* directory) {
+  facezip_package* package = NULL;
+  facezip_texture_info texture;
+  facezip_weights_info weights;
+  unsigned char samples[16 * 8], codes[2 * 2 * 2];
+  unsigned short wide[4 * 2];
+  const float given[2] = {0.0f, 0.0f};
+  int i;
+  CHECK(facezip_open(directory, &package) == FACEZIP_OK);
+  if (package == NULL) return;
+  CHECK(facezip_map_count(package) == 2 && facezip_find_expression(package, "smile") == 0);
+  texture.struct_size = sizeof(texture);
+  CHECK(facezip_get_texture_info(package, 0, 0, &texture) == FACEZIP_OK);
+  CHECK(strcmp(texture.format, "") == 0 && texture.vk_format == 0 && texture.dxgi_format == 0);
+  CHECK(texture.width == 16 && texture.height == 8 && texture.channels == 1 && texture.sample_type == FACEZIP_UINT8);
+  CHECK(texture.block_width == 1 && texture.block_height == 1 && texture.block_bytes == 1 && texture.levels == 1);
+  CHECK(texture.bytes == 128 && texture.scale[0] == 1.0 && texture.offset[0] == 0.0);
+  CHECK(facezip_level_bytes(package, 0, 0, 0) == 128 && facezip_level_bytes(package, 0, 0, 1) == 0);
+  CHECK(facezip_level_bytes(package, 0, 3, 0) == 0 && facezip_level_bytes(NULL, 0, 0, 0) == 0);
+  CHECK(facezip_read_level(package, 0, 0, 0, samples, sizeof(samples)) == FACEZIP_OK);
+  for (i = 0; i < 16 * 8; ++i) CHECK(samples[i] == 100 + i % 16);
+  CHECK(facezip_get_texture_info(package, 1, 2, &texture) == FACEZIP_OK);
+  CHECK(texture.sample_type == FACEZIP_UINT16 && texture.scale[0] == 0.00390625 && texture.offset[0] == 0.0);
+  CHECK(facezip_read_level(package, 1, 2, 0, wide, sizeof(wide)) == FACEZIP_OK);
+  for (i = 0; i < 8; ++i) CHECK(wide[i] == 20000 + 300 * (i % 4));
+  weights.struct_size = sizeof(weights);
+  CHECK(facezip_get_weights_info(package, 0, &weights) == FACEZIP_OK);
+  CHECK(weights.set == 0 && weights.columns == 2 && weights.rows == 1 && weights.channels == 2);
+  CHECK(weights.weight_scale == 8 && weights.bytes == sizeof(codes) && weights.offset[1] == -1.0);
+  CHECK(facezip_read_weights(package, 0, codes, sizeof(codes)) == FACEZIP_OK);
+  {
+    static const unsigned char expected[8] = {255, 128, 0, 128, 0, 192, 255, 64};
+    for (i = 0; i < 8; ++i) CHECK(codes[i] == expected[i]);
+  }
+  CHECK_FAILS(facezip_get_texture_info(package, 0, 3, &texture), FACEZIP_ERROR_ARGUMENT, "texture: expected 0 to 2");
+  CHECK_FAILS(facezip_get_texture_info(package, 0, -1, &texture), FACEZIP_ERROR_ARGUMENT, "texture");
+  CHECK_FAILS(facezip_get_texture_info(package, 2, 0, &texture), FACEZIP_ERROR_ARGUMENT, "map");
+  CHECK_FAILS(facezip_get_texture_info(package, 0, 0, NULL), FACEZIP_ERROR_ARGUMENT, "null");
+  texture.struct_size = weights.struct_size = 1;
+  CHECK_FAILS(facezip_get_texture_info(package, 0, 0, &texture), FACEZIP_ERROR_ARGUMENT, "struct_size");
+  CHECK_FAILS(facezip_get_weights_info(package, 0, &weights), FACEZIP_ERROR_ARGUMENT, "struct_size");
+  CHECK_FAILS(facezip_read_level(package, 0, 0, 1, samples, 128), FACEZIP_ERROR_ARGUMENT, "level: expected 0 to 0");
+  CHECK_FAILS(facezip_read_level(package, 0, 0, 0, samples, 127), FACEZIP_ERROR_ARGUMENT, "expected 128");
+  CHECK_FAILS(facezip_read_level(package, 0, 0, 0, NULL, 128), FACEZIP_ERROR_ARGUMENT, "null");
+  CHECK_FAILS(facezip_read_weights(package, 0, codes, 7), FACEZIP_ERROR_ARGUMENT, "expected 8");
+  CHECK_FAILS(facezip_read_weights(package, 0, NULL, 8), FACEZIP_ERROR_ARGUMENT, "null");
+  CHECK_FAILS(facezip_set_weights(package, given, 2), FACEZIP_ERROR_ARGUMENT, "facezip_load");
+  CHECK_FAILS(facezip_blend(package, 0, samples, 128), FACEZIP_ERROR_ARGUMENT, "facezip_load");
+  facezip_free(package);
+  CHECK_FAILS(facezip_open("/no/such/package", &package), FACEZIP_ERROR_INPUT, "/no/such/package");
+  CHECK(package == NULL);
+  CHECK_FAILS(facezip_open(NULL, &package), FACEZIP_ERROR_ARGUMENT, "directory");
+  CHECK_FAILS(facezip_open(directory, NULL), FACEZIP_ERROR_ARGUMENT, "null");
 }
 
 static void check_load_refusals(const char* directory) {
@@ -108,6 +169,7 @@ int main(int argc, char** argv) {
   CHECK(facezip_runtime_abi() == FACEZIP_RUNTIME_ABI);
   CHECK(strlen(facezip_runtime_version()) > 0);
   check_load_refusals(argv[1]);
+  check_files(argv[1]);
   CHECK(facezip_load(argv[1], "cpu", &package) == FACEZIP_OK);
   if (package == NULL) return 1;
   check_description(package);

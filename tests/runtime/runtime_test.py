@@ -4,6 +4,7 @@ import array
 import ctypes
 import os
 import pathlib
+import struct
 import subprocess
 import sys
 import tempfile
@@ -19,6 +20,14 @@ class MapInfo(ctypes.Structure):
                 ("sample_type", ctypes.c_int32), ("frame_bytes", ctypes.c_size_t)]
 
 
+class TextureInfo(ctypes.Structure):
+    _fields_ = [("struct_size", ctypes.c_size_t), ("format", ctypes.c_char_p), ("vk_format", ctypes.c_uint32),
+                ("dxgi_format", ctypes.c_uint32), ("width", ctypes.c_int32), ("height", ctypes.c_int32),
+                ("channels", ctypes.c_int32), ("sample_type", ctypes.c_int32), ("block_width", ctypes.c_int32),
+                ("block_height", ctypes.c_int32), ("block_bytes", ctypes.c_int32), ("levels", ctypes.c_int32),
+                ("bytes", ctypes.c_size_t), ("scale", ctypes.c_double * 4), ("offset", ctypes.c_double * 4)]
+
+
 def load_library():
     lib = ctypes.CDLL(LIBRARY)
     handle, index = ctypes.c_void_p, ctypes.c_int32
@@ -28,6 +37,11 @@ def load_library():
     lib.facezip_free.restype = None
     lib.facezip_expression_count.argtypes = [handle]
     lib.facezip_get_map_info.argtypes = [handle, index, ctypes.POINTER(MapInfo)]
+    lib.facezip_open.argtypes = [ctypes.c_char_p, ctypes.POINTER(handle)]
+    lib.facezip_get_texture_info.argtypes = [handle, index, index, ctypes.POINTER(TextureInfo)]
+    lib.facezip_level_bytes.argtypes = [handle, index, index, index]
+    lib.facezip_level_bytes.restype = ctypes.c_size_t
+    lib.facezip_read_level.argtypes = [handle, index, index, index, ctypes.c_void_p, ctypes.c_size_t]
     lib.facezip_set_weights.argtypes = [handle, ctypes.POINTER(ctypes.c_float), ctypes.c_size_t]
     lib.facezip_blend.argtypes = [handle, index, ctypes.c_void_p, ctypes.c_size_t]
     return lib
@@ -117,6 +131,33 @@ class Runtime(unittest.TestCase):
         self.assertEqual(len(frames["neutral"]), 1)
         self.assertEqual(len(frames["smile"]), 1)
         self.assertNotEqual(frames["neutral"], frames["smile"])
+
+    def test_blocks_as_files_hold_them(self):
+        with tempfile.TemporaryDirectory() as folder:
+            packed = pathlib.Path(folder) / "package"
+            for format_name, vk, dxgi, block, size in (("bc7", 139, 80, (4, 4), 8), ("astc-6x5", 163, 0, (6, 5), 16)):
+                self.run_facezip("convert", EXAMPLE, "--texture-format", format_name, "--output", packed)
+                handle = ctypes.c_void_p()
+                self.assertEqual(LIB.facezip_open(os.fsencode(packed), ctypes.byref(handle)), 0)
+                info = TextureInfo(struct_size=ctypes.sizeof(TextureInfo))
+                self.assertEqual(LIB.facezip_get_texture_info(handle, 0, 2, ctypes.byref(info)), 0)
+                self.assertEqual(info.format.decode(), {"bc7": "bc4"}.get(format_name, format_name))  # of one channel
+                self.assertEqual((info.vk_format, info.dxgi_format), (vk, dxgi))
+                self.assertEqual((info.block_width, info.block_height, info.block_bytes), (*block, size))
+                self.assertEqual((info.width, info.height, info.levels), (16, 8, 5))
+                self.assertGreater(info.scale[0], 0.0)
+                file = (packed / "albedo/difference_1.ktx2").read_bytes()
+                total = 0
+                for level in range(info.levels):
+                    begin, length = struct.unpack_from("<QQ", file, 80 + 24 * level)
+                    total += length
+                    self.assertEqual(LIB.facezip_level_bytes(handle, 0, 2, level), length)
+                    blocks = ctypes.create_string_buffer(length)
+                    self.assertEqual(LIB.facezip_read_level(handle, 0, 2, level, blocks, length), 0)
+                    self.assertEqual(blocks.raw, file[begin:begin + length])
+                self.assertEqual(info.bytes, total)
+                self.assertEqual(LIB.facezip_level_bytes(handle, 0, 2, 5), 0)
+                LIB.facezip_free(handle)
 
     def test_float_maps(self):
         """Their neutral is an EXR file: OpenImageIO is loaded for it."""

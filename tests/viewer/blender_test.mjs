@@ -81,6 +81,7 @@ function withFewerChannels(packagePath, map, channels) {
 
 checkExport(join(packages, 'head'), join(work, 'head'));
 checkExport(join(packages, 'parts'), join(work, 'parts'));  // whose eyes and teeth lie in the same layout
+checkExport(join(packages, 'bc7'), join(work, 'bc7'));
 
 const variant = join(work, 'variant_package');
 cpSync(join(packages, 'head'), variant, { recursive: true });

@@ -17,6 +17,7 @@ include(${CMAKE_CURRENT_LIST_DIR}/append_parts.cmake)
 facezip(rig ${OUTPUT}/capture --template ${FOLDER} --output ${OUTPUT}/parts --iterations 1 --restarts 5 --eyes blue)
 facezip(export ${OUTPUT}/parts --target gltf --output ${OUTPUT}/parts_gltf)
 facezip(export ${OUTPUT}/head --target gltf --output ${OUTPUT}/gltf)
+facezip(export ${OUTPUT}/bc7 --target gltf --output ${OUTPUT}/gltf_blocks)
 # As a registration leaves it in its capture, and tells of it; a scan's name is a stranger's text.
 file(MAKE_DIRECTORY ${OUTPUT}/capture/registration)
 file(COPY_FILE ${OUTPUT}/capture/albedo/neutral.png ${OUTPUT}/capture/registration/neutral.png)

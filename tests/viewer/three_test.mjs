@@ -77,6 +77,17 @@ await run('the shader computes what facezip blend does', async () => {
     assert.ok(largest <= (Object.keys(weights).length ? 1.5 : 0), `${largest}/255`);
   }
 });
+for (const format of ['bc7', 'astc-5x5']) {
+  await run(`blocks of ${format} are blended as they are`, async () => {
+    const other = join(packages, format);
+    execFileSync(facezip, ['export', other, '--target', 'three', '--output', join(work, format)]);
+    await page.evaluate(async (folder) => { globalThis.blocks = await globalThis.loadFace(folder); }, `/${format}/`);
+    const bake = (from, weights, map) => from.evaluate(([given, i]) => globalThis.bake(globalThis.blocks, given, i), [weights, map]);
+    const own = JSON.parse(readFileSync(join(other, 'package.json')));
+    const largest = await blendDifference({ facezip, packagePath: other, description: own, work }, page, bake, { [names[1]]: 0.7 });
+    assert.ok(largest <= 2, `${largest}/255`);
+  });
+}
 await run('two faces at once keep to their own packages', async () => {
   const other = join(packages, 'many');
   execFileSync(facezip, ['export', other, '--target', 'three', '--output', join(work, 'other')]);

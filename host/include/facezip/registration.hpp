@@ -79,10 +79,10 @@ ProtectedPaths inputsOf(const std::filesystem::path& scans, const std::filesyste
 /// Registers the scans of a directory to a template and writes them as a capture (docs/registration.md):
 /// neutral.obj, expressions/NAME.obj, albedo/NAME.png, confidence/NAME.png, face_region.txt, capture.json. The capture
 /// appears whole or not at all; an earlier one that this made is replaced.
-/// scans               NAME.obj, NAME.ply or NAME.glb with textures or coloured vertices, "neutral" among them, and landmarks.json
-/// template_directory  neutral.obj with UVs, landmarks.json; shapes (NAME.obj) and identity modes where it has any
-/// Throws InputError (a file, an option, scans that do not fit the template), DeviceError, OutputError, SolverError,
-/// Cancelled.
+/// scans               NAME.obj, NAME.ply or NAME.glb with textures or coloured vertices, "neutral" among them, and
+/// landmarks.json template_directory  neutral.obj with UVs, landmarks.json; shapes (NAME.obj) and identity modes where
+/// it has any Throws InputError (a file, an option, scans that do not fit the template), DeviceError, OutputError,
+/// SolverError, Cancelled.
 RegistrationReport registerScans(const std::filesystem::path& scans, const std::filesystem::path& template_directory,
                                  const std::filesystem::path& capture, const RegistrationOptions& options,
                                  const Device& device, Progress& progress);

@@ -6,6 +6,7 @@
 
 #include "facezip/alignment.hpp"
 #include "facezip/compress.hpp"
+#include "facezip/convert.hpp"
 #include "facezip/evaluate.hpp"
 #include "facezip/learn.hpp"
 #include "facezip/registration.hpp"
@@ -15,6 +16,7 @@ namespace facezip {
 
 /// JSON text of a report, ending in a line end.
 std::string toJson(const CompressReport& report);
+std::string toJson(const ConvertReport& report);
 std::string toJson(const Evaluation& evaluation);
 std::string toJson(const RegistrationReport& report);
 std::string toJson(const AlignmentReport& report);

@@ -14,7 +14,7 @@ BandBuffers::BandBuffers(device::DeviceContext& device_context)
 
 BandShape bandShape(const image::SampleBands& samples, int rows) {
   const image::ImageShape& shape = samples.shape();
-  return {shape.width, rows, shape.channels, samples.expressions(), shape.type};
+  return {shape.width, rows, shape.channels, samples.expressions(), samples.sampleType()};
 }
 
 void forEachMapBand(image::SampleBands& samples, int band_rows, BandBuffers& buffers, const MakeTiles& make_tiles,

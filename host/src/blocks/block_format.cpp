@@ -6,6 +6,7 @@
 #include <array>
 #include <cassert>
 
+#include "facezip/block_size.hpp"
 #include "facezip/error.hpp"
 
 namespace facezip::blocks {
@@ -74,6 +75,15 @@ void requireChannels(BlockFormat format, int channels) {
 }  // namespace facezip::blocks
 
 namespace facezip {
+
+BlockSize blockSize(BlockFormat format) {
+  const blocks::BlockFormatInfo& info = blocks::infoOf(format);
+  return {info.block_width, info.block_height, info.block_bytes};
+}
+
+std::uint64_t blockTextureBytes(BlockFormat format, int width, int height) {
+  return blocks::blockBytes(format, width, height);
+}
 
 std::string_view blockFormatName(BlockFormat format) { return blocks::infoOf(format).name; }
 

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "bands/map_set.hpp"
@@ -26,7 +28,16 @@ struct CodedNeutral {
   std::span<const std::byte> rows(int begin, int end) const;
 };
 
-/// Codes the neutral of a map of 8-bit samples. Covered texels count most. Throws InputError, DeviceError, Cancelled.
+/// Gives rows [begin, end) of a neutral as blocks::TexelRows has samples; called from top to bottom.
+using ReadNeutral = std::function<decltype(blocks::TexelRows::samples)(int begin, int end)>;
+
+/// Codes the neutral of a map whose texels are of these classes. Covered texels count most.
+/// name  of the map. Throws InputError, DeviceError, Cancelled.
+CodedNeutral codeNeutral(device::DeviceContext& context, const image::ImageShape& shape,
+                         const raster::TexelClasses& classes, const ReadNeutral& read, blocks::BlockFormat format,
+                         blocks::Quality quality, const std::string& name, Progress& progress);
+
+/// Codes the captured neutral of a map of 8-bit samples. Likewise.
 CodedNeutral codeNeutral(device::DeviceContext& context, const OpenMap& map, blocks::BlockFormat format,
                          blocks::Quality quality, Progress& progress);
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "blocks/block_format.hpp"
-#include "codes/coded_refinement.hpp"
 
 namespace facezip::compress {
 namespace {
@@ -41,11 +40,16 @@ EncodedWeights fitWeightsToBlocks(const FitProblem& problem, const PackageForm& 
                     {codes[m].formats, codes[m].encoding, problem.maps[m].map->samples->shape().channels},
                     neutral ? &*neutral : nullptr});
   }
-  const CodedProblem coded{problem.space,         fitted.weights,      maps,
-                           weighedTiles(problem), cellEnergy(problem), problem.window_rows};
-  const GridWeights weights = refineCoded(run.context, coded, RefinementOptions{}, kTurns, run.progress);
+  return refitWeights(problem, fitted.weights, maps, run);
+}
+
+EncodedWeights refitWeights(const FitProblem& problem, const EncodedWeights& weights, std::span<const CodedMap> maps,
+                            const device::Run& run) {
+  const CodedProblem coded{problem.space,      weights, maps, weighedTiles(problem), cellEnergy(problem),
+                           problem.window_rows};
+  const GridWeights refined = refineCoded(run.context, coded, RefinementOptions{}, kTurns, run.progress);
   run.clock.book("fitting to blocks");
-  return encodeFitted(weights, problem);
+  return encodeFitted(refined, problem);
 }
 
 }  // namespace facezip::compress

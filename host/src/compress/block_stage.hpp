@@ -3,8 +3,10 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "codes/coded_refinement.hpp"
 #include "compress/fit_stage.hpp"
 #include "compress/package_form.hpp"
 #include "compress/write_stage.hpp"
@@ -19,5 +21,10 @@ std::vector<std::optional<CodedNeutral>> codeNeutrals(const PackageForm& form, s
 /// Weights that suit what the blocks decode to. fitted  with its neutrals
 EncodedWeights fitWeightsToBlocks(const FitProblem& problem, const PackageForm& form, const FittedWeights& fitted,
                                   const CoveredFace& face, const device::Run& run);
+
+/// The same of maps whose codes are known.
+/// weights  that are fitted to textures that are not coded
+EncodedWeights refitWeights(const FitProblem& problem, const EncodedWeights& weights, std::span<const CodedMap> maps,
+                            const device::Run& run);
 
 }  // namespace facezip::compress

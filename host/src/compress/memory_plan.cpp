@@ -53,7 +53,7 @@ int MemoryPlan::bandRows(const PackageForm& form) const {
   int rows = 0;
   for (const OpenMap& map : maps_.maps) {
     BandShape shape = bandShape(*map.samples, 0);
-    shape.neutral_decoded = form.blocks && shape.sample_type == image::SampleType::kUint8;
+    shape.neutral_decoded = form.blocks && map.samples->shape().type == image::SampleType::kUint8;
     BandCost cost = bandCost(shape, form.differences, slots_.masks);
     cost.row_step = std::max(kTileSide, blockRows(form));  // of all maps, which have bands of the same rows
     const int planned =

@@ -108,7 +108,8 @@ blocks::EncoderOptions mipOptions(BlockFormat format, int channels) {
   return options;
 }
 
-/// A map in blocks: neutral and difference textures, with their mip levels.
+}  // namespace
+
 void writeBlockMap(const MapSolution& solution, const PackageMap& described, const std::filesystem::path& directory,
                    int band_rows, BandBuffers& buffers, const device::Run& run) {
   const OpenMap& map = *solution.map.map;
@@ -138,8 +139,6 @@ void writeBlockMap(const MapSolution& solution, const PackageMap& described, con
   neutral->close();
   for (const auto& difference : differences) difference->close();
 }
-
-}  // namespace
 
 void writePackageFiles(const PackageSolution& solution, const std::filesystem::path& directory, int band_rows,
                        const device::Run& run) {

@@ -40,6 +40,11 @@ struct PackageSolution {
   const MaskGuides& guides;
 };
 
+/// Writes the files of a map in blocks: neutral and difference textures, with their mip levels.
+/// described  the map with its formats and the names of its files
+void writeBlockMap(const MapSolution& solution, const PackageMap& described, const std::filesystem::path& directory,
+                   int band_rows, BandBuffers& buffers, const device::Run& run);
+
 /// Writes the files of the package into `directory`, in bands of so many rows.
 /// Throws OutputError, and what passes over the texels throw.
 void writePackageFiles(const PackageSolution& solution, const std::filesystem::path& directory, int band_rows,

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "export/texture_copy.hpp"
+#include "package/file_copy.hpp"
 #include "package/package_files.hpp"
 #include "package/package_json.hpp"
 #include "package/weight_atlas.hpp"
@@ -60,11 +61,11 @@ std::vector<package::StoredTexture> differencesOf(const EngineMap& map) {
   return textures;
 }
 
-/// A texture in blocks of the map; none where all are images.
-std::optional<BlockFormat> blocksOf(const PackageMap& map) {
-  if (map.neutral_format) return map.neutral_format;
-  for (const PackageDifference& difference : map.differences) {
-    if (difference.format) return difference.format;
+/// The format of a texture that is stored in blocks and written as an image; none where there is no such.
+std::optional<BlockFormat> decodedBlocks(const PackageMap& map, KeptBlocks kept) {
+  if (map.neutral_format && !kept(map, -1)) return map.neutral_format;
+  for (std::size_t i = 0; i < map.differences.size(); ++i) {
+    if (map.differences[i].format && !kept(map, static_cast<int>(i))) return map.differences[i].format;
   }
   return std::nullopt;
 }
@@ -88,7 +89,7 @@ std::vector<EngineMap> engineMaps(const Package& package) {
   return maps;
 }
 
-std::vector<std::string> lossesOf(const Package& package) {
+std::vector<std::string> lossesOf(const Package& package, KeptBlocks kept, const std::string& recoded) {
   std::vector<std::string> losses;
   for (const PackageMap& map : package.maps()) {
     if (map.sample_type == SampleType::kFloat32) {
@@ -96,10 +97,9 @@ std::vector<std::string> lossesOf(const Package& package) {
           fmt::format("{}: left out, its samples are floats and textures of engines have 8 bits", map.name));
     } else if (map.sample_type == SampleType::kUint16) {
       losses.push_back(fmt::format("{}: rounded from 16 bits to 8", map.name));
-    } else if (const std::optional<BlockFormat> format = blocksOf(map)) {
+    } else if (const std::optional<BlockFormat> format = decodedBlocks(map, kept)) {
       losses.push_back(
-          fmt::format("{}: its {} blocks are decoded to PNG; import it uncompressed, or the engine codes it again",
-                      map.name, blockFormatName(*format)));
+          fmt::format("{}: its {} blocks are decoded to PNG, {}", map.name, blockFormatName(*format), recoded));
     }
   }
   return losses;
@@ -115,11 +115,13 @@ void writeNeutral(const Package& package, const EngineMap& map, const fs::path& 
   copyTexture(package, package::neutralTexture(map.map), folder / (map.id + "_neutral.png"), progress);
 }
 
-void writeDifferences(const Package& package, const EngineMap& map, const fs::path& folder, Progress& progress) {
-  const std::vector<package::StoredTexture> textures = differencesOf(map);
-  for (std::size_t i = 0; i < textures.size(); ++i) {
-    copyTexture(package, textures[i], folder / fmt::format("{}_difference_{}.png", map.id, i), progress);
-  }
+void writeTexture(const Package& package, const EngineMap& map, int texture, KeptBlocks kept, const fs::path& name,
+                  Progress& progress) {
+  const package::StoredTexture stored =
+      texture < 0 ? package::neutralTexture(map.map) : package::differenceTexture(map.map, texture);
+  if (!kept(map.map, texture)) return copyTexture(package, stored, name.string() + ".png", progress);
+  progress.checkCancelled();
+  package::copyFile(package, stored.file, name.string() + ".fzktx2");
 }
 
 StackLayout stackLayout(const Package& package, const EngineMap& map) {
@@ -177,7 +179,9 @@ std::array<double, 4> fourOf(const std::vector<double>& values, std::size_t file
   return four;
 }
 
-std::string swizzled(const std::string& type, const std::string& sample, int channels) {
+std::string swizzled(const std::string& type, const std::string& sample, int channels,
+                     std::optional<BlockFormat> blocks) {
+  if (channels == 2 && blocks == BlockFormat::kBc5) return fmt::format("{}({}.rg, 0.0, 0.0)", type, sample);
   switch (channels) {
     case 1:
       return fmt::format("{}({}.r, 0.0, 0.0, 0.0)", type, sample);

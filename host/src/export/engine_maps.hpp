@@ -4,6 +4,7 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,8 +30,15 @@ struct EngineMap {
 /// The maps of 8 and 16 bits: engines take no floats of ours.
 std::vector<EngineMap> engineMaps(const Package& package);
 
-/// What engines get less of than the package holds: floats are left out, 16 bits become 8. A sentence for each map.
-std::vector<std::string> lossesOf(const Package& package);
+/// The blocks of a texture that an engine takes as they are; none: it gets an image. texture  of the map: -1 is the
+/// neutral, others are difference textures.
+using KeptBlocks = std::optional<BlockFormat> (*)(const PackageMap& map, int texture);
+/// Of engines that import no blocks.
+inline std::optional<BlockFormat> noBlocks(const PackageMap&, int) { return std::nullopt; }
+
+/// What engines get less of than the package holds: floats are left out, 16 bits become 8, blocks images. A sentence
+/// for each map. recoded  what the engine makes of images of blocks, for the sentence
+std::vector<std::string> lossesOf(const Package& package, KeptBlocks kept, const std::string& recoded);
 
 /// Throws InputError where engineMaps() found none.
 void requireMaps(const Package& package, const std::vector<EngineMap>& maps);
@@ -39,9 +47,9 @@ void requireMaps(const Package& package, const std::vector<EngineMap>& maps);
 void writeNeutral(const Package& package, const EngineMap& map, const std::filesystem::path& folder,
                   Progress& progress);
 
-/// Writes textures/ID_difference_I.png likewise.
-void writeDifferences(const Package& package, const EngineMap& map, const std::filesystem::path& folder,
-                      Progress& progress);
+/// Writes any texture of the map as NAME.png likewise; of blocks that are kept, its KTX2 file as NAME.fzktx2.
+void writeTexture(const Package& package, const EngineMap& map, int texture, KeptBlocks kept,
+                  const std::filesystem::path& name, Progress& progress);
 
 /// Where writeStack() puts texture i: column i mod columns, row i div columns.
 struct StackLayout {
@@ -69,6 +77,8 @@ std::string literal(const std::string& type, const std::array<double, 4>& values
 std::array<double, 4> fourOf(const std::vector<double>& values, std::size_t file);
 
 /// What turns a sample of a texture of so many channels into them: gray with alpha is sampled as (g, g, g, a).
-std::string swizzled(const std::string& type, const std::string& sample, int channels);
+/// blocks  of the texture, if it is in blocks: BC5 has red and green
+std::string swizzled(const std::string& type, const std::string& sample, int channels,
+                     std::optional<BlockFormat> blocks = {});
 
 }  // namespace facezip::exporting

@@ -4,11 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "convert/converted_files.hpp"
 #include "export/engine_maps.hpp"
 #include "export/export_files.hpp"
 #include "export/godot.hpp"
@@ -16,11 +16,11 @@
 #include "export/unreal.hpp"
 #include "facezip/check.hpp"
 #include "facezip/view.hpp"
-#include "io/file_pieces.hpp"
-#include "io/folder.hpp"
 #include "io/staged_directory.hpp"
 #include "mesh/gltf_scene.hpp"
+#include "package/file_copy.hpp"
 #include "package/package_json.hpp"
+#include "package/package_textures.hpp"
 
 namespace facezip {
 namespace fs = std::filesystem;
@@ -40,6 +40,9 @@ struct Target {
   std::vector<mesh::MapRole> roles;  ///< that its material shows
   Textures textures = Textures::kPackage;
   void (*write)(const Package& package, const fs::path& folder, Progress& progress) = nullptr;
+  exporting::KeptBlocks kept = exporting::noBlocks;
+  std::string recoded = "";  ///< what becomes of images of blocks, for a note
+  bool reads_blocks = true;  ///< of a copy of the package; else it becomes one of images
 };
 
 const std::map<std::string, Target>& targets() {
@@ -51,29 +54,53 @@ const std::map<std::string, Target>& targets() {
   static const std::map<std::string, Target> all = {
       {"gltf", {{"gltf.md", "facezip_blend.h"}, every}},
       {"three", {{"three.md", "facezip_three.js"}, every}},
-      {"blender", {{"blender.md", "facezip_blender.py"}, traced}},
-      {"godot", {{"godot.md", "facezip_face.gd", "demo.gd"}, every, Textures::kNone, exporting::writeGodot}},
-      {"unity", {{"unity.md", "FaceZipDriver.cs", "FaceZipImport.cs"}, every, Textures::kOwn, exporting::writeUnity}},
-      {"unreal", {{"unreal.md", "facezip_unreal.py"}, every, Textures::kNone, exporting::writeUnreal}}};
+      {"blender",
+       {{"blender.md", "facezip_blender.py"},
+        traced,
+        Textures::kPackage,
+        nullptr,
+        exporting::noBlocks,
+        "which Blender reads",
+        false}},
+      {"godot",
+       {{"godot.md", "facezip_face.gd", "demo.gd"},
+        every,
+        Textures::kNone,
+        exporting::writeGodot,
+        exporting::noBlocks,
+        "which Godot 3 keeps uncompressed"}},
+      {"unity",
+       {{"unity.md", "FaceZipDriver.cs", "FaceZipImport.cs"},
+        every,
+        Textures::kOwn,
+        exporting::writeUnity,
+        exporting::unityBlocks,
+        "which Unity keeps uncompressed: of ASTC it takes square blocks, of BC sides that are "
+        "multiples of 4"}},
+      {"unreal",
+       {{"unreal.md", "facezip_unreal.py"},
+        every,
+        Textures::kNone,
+        exporting::writeUnreal,
+        exporting::noBlocks,
+        "which Unreal codes again, as the script says it"}}};
   return all;
 }
 
-void copyFile(const Package& package, const std::string& name, const fs::path& to) {
-  const InputFile file = package.folder().open(name, "a file of the package");
-  std::ofstream out(to, std::ios::binary);
-  io::forEachPiece(file, (package.directory() / name).string(), std::size_t{1} << 20,
-                   [&](std::string_view piece) { out << piece; });
-  out.close();
-  if (!out) throw OutputError(to, "could not be written", "is the disk full?");
-}
+bool hasBlocks(const Package& package) { return std::ranges::any_of(package.maps(), package::hasBlocks); }
 
-void copyPackage(const Package& package, const fs::path& folder, std::uint64_t memory_bytes, Progress& progress) {
+void copyPackage(const Package& package, const Target& target, const fs::path& folder, std::uint64_t memory_bytes,
+                 Progress& progress) {
   checkTexels(package, progress, memory_bytes);
+  if (!target.reads_blocks && hasBlocks(package)) {
+    io::createDirectories(folder);
+    return convert::writeAsImages(package, folder, progress);
+  }
   for (const std::string& name : packageFiles(package)) {
     progress.checkCancelled();
     const fs::path to = folder / name;
     io::createDirectories(to.parent_path());
-    copyFile(package, name, to);
+    package::copyFile(package, name, to);
   }
 }
 
@@ -91,14 +118,22 @@ nlohmann::json blendExtras(const PackageDescription& description) {
   return {{"facezip", blend}};
 }
 
-/// The material of scene.gltf, for tools that know nothing of facezip: plain neutrals.
-mesh::GltfMaterial plainMaterial(const Package& package, Textures textures) {
+/// The material of scene.gltf, for tools that know nothing of facezip: plain neutrals. Of one in blocks, which glTF
+/// does not know, an image is written.
+mesh::GltfMaterial plainMaterial(const Package& package, const Target& target, const fs::path& folder,
+                                 Progress& progress) {
   mesh::GltfMaterial material;
-  if (textures == Textures::kNone) return material;
-  const bool own = textures == Textures::kOwn;
+  if (target.textures == Textures::kNone) return material;
+  const bool own = target.textures == Textures::kOwn;
   for (const exporting::EngineMap& map : exporting::engineMaps(package)) {
-    if (!own && !map.map.neutral_file.ends_with(".png")) continue;
-    const std::string file = own ? "textures/" + map.id + "_neutral.png" : "package/" + map.map.neutral_file;
+    if (own && target.kept(map.map, -1)) continue;  // the engine's material has it
+    std::string file = own ? "textures/" + map.id + "_neutral.png" : "package/" + map.map.neutral_file;
+    if (!own && map.map.neutral_format) {
+      if (map.role == mesh::MapRole::kOther) continue;
+      file = "textures/" + map.id + "_neutral.png";
+      io::createDirectories(folder / "textures");
+      exporting::writeNeutral(package, map, folder / "textures", progress);
+    }
     if (map.role == mesh::MapRole::kAlbedo) material.base_colour_texture = file;
     if (map.role == mesh::MapRole::kNormal) material.normal_texture = file;
     if (map.role == mesh::MapRole::kRoughness) material.roughness_texture = file;
@@ -108,23 +143,27 @@ mesh::GltfMaterial plainMaterial(const Package& package, Textures textures) {
   return material;
 }
 
-/// scene.gltf, and, where the target has no copy of the package, the textures of its parts.
-void writeScene(const Package& package, Textures textures, const fs::path& folder, std::uint64_t memory_bytes) {
+/// scene.gltf, whose material speaks of the package that lies beside it, and, where the target has no copy of the
+/// package, the textures of its parts.
+void writeScene(const Package& package, const Target& target, const fs::path& folder, std::uint64_t memory_bytes,
+                Progress& progress) {
   const mesh::PackageMesh mesh = mesh::readPackageMesh(package, memory_bytes);
-  const mesh::GltfMaterial material = plainMaterial(package, textures);
+  const bool made_images = target.write == nullptr && !target.reads_blocks && hasBlocks(package);
+  const mesh::GltfMaterial material =
+      plainMaterial(made_images ? Package::open(folder / "package") : package, target, folder, progress);
   const std::optional<PackageParts>& described = package.description().parts;
   if (!described) return mesh::addBlendToGltf(mesh, nullptr, folder / "scene.gltf", material);
   mesh::GltfParts parts{mesh::readPackageParts(package, mesh, memory_bytes), described->materials};
   for (std::size_t p = 0; p < parts.materials.size(); ++p) {
     std::string& texture = parts.materials[p].texture;
     if (texture.empty()) continue;
-    if (textures == Textures::kPackage) {
+    if (target.textures == Textures::kPackage) {
       texture = "package/" + texture;
       continue;
     }
     const std::string name = fmt::format("parts/part_{}.png", p);  // engines are not all content with any name
     io::createDirectories(folder / "parts");
-    copyFile(package, texture, folder / name);
+    package::copyFile(package, texture, folder / name);
     texture = name;
   }
   mesh::addBlendToGltf(mesh, &parts, folder / "scene.gltf", material);
@@ -170,8 +209,7 @@ std::vector<std::string> exportPackage(const Package& package, const std::string
   if (found == targets().end()) {
     throw InputError({"--target", "", fmt::format("{}", fmt::join(exportTargets(), ", ")), target, ""});
   }
-  const PackageDescription& description = package.description();
-  if (description.mesh_file.empty()) {
+  if (package.description().mesh_file.empty()) {
     throw InputError({package.directory().string(), "mesh", "a package with meshes", "none",
                       "compress the capture again, without --no-mesh"});
   }
@@ -181,16 +219,19 @@ std::vector<std::string> exportPackage(const Package& package, const std::string
   if (chosen.write != nullptr) {
     chosen.write(package, staged.path(), progress);
   } else {
-    copyPackage(package, staged.path() / "package", memory_bytes, progress);
+    copyPackage(package, chosen, staged.path() / "package", memory_bytes, progress);
   }
-  writeScene(package, chosen.textures, staged.path(), memory_bytes);
+  writeScene(package, chosen, staged.path(), memory_bytes, progress);
   for (const std::string& file : chosen.files) {
     const std::string text(exporting::embeddedExportFiles().at(file));
     const bool readme = file.ends_with(".md");
     io::writeTextFile(staged.path() / (readme ? "README.md" : file), readme ? withNames(text, package) : text);
   }
   staged.commit();
-  std::vector<std::string> notes = chosen.write != nullptr ? exporting::lossesOf(package) : std::vector<std::string>();
+  std::vector<std::string> notes;
+  if (chosen.write != nullptr || !chosen.reads_blocks) {
+    notes = exporting::lossesOf(package, chosen.kept, chosen.recoded);
+  }
   for (std::string& note : mesh::notesOfRoles(package.maps(), chosen.roles)) notes.push_back(std::move(note));
   return notes;
 }

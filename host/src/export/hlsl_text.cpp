@@ -49,7 +49,7 @@ std::string weightLine(const PackageWeights& weights, std::size_t file, std::siz
       file, expressions, literal("float4", scale), literal("float4", offset), channels == 2 ? ".xwyz" : "");
 }
 
-std::string mapFunction(const Package& package, const EngineMap& map) {
+std::string mapFunction(const Package& package, const EngineMap& map, KeptBlocks kept) {
   const PackageWeights& weights = package.weightSets()[static_cast<std::size_t>(map.map.weight_set)];
   std::string parameters = "float2 uv, SamplerState state, Texture2D<float4> neutral";
   for (std::size_t f = 0; f < weights.files.size(); ++f) parameters += fmt::format(", Texture2D<float4> weights_{}", f);
@@ -63,11 +63,18 @@ std::string mapFunction(const Package& package, const EngineMap& map) {
   text += fmt::format("  float2 cell = fz_cell(uv, float2({}.0, {}.0), {}.0, cells);\n", map.map.width, map.map.height,
                       map.map.weight_scale);
   for (std::size_t f = 0; f < weights.files.size(); ++f) text += weightLine(weights, f, package.expressions().size());
-  text += "  uv = FZ_UV(uv);\n  float4 value = neutral.Sample(state, uv);\n";
-  if (map.map.channels < 3) text += fmt::format("  value = {};\n", swizzled("float4", "value", map.map.channels));
+  // Rows of blocks are uploaded as they are stored, from the top.
+  const auto place = [&](int texture) { return kept(map.map, texture) ? "from_top" : "uv"; };
+  text += fmt::format("  float2 from_top = uv;\n  uv = FZ_UV(uv);\n  float4 value = neutral.Sample(state, {});\n",
+                      place(-1));
+  if (map.map.channels < 3) {
+    text += fmt::format("  value = {};\n", swizzled("float4", "value", map.map.channels, kept(map.map, -1)));
+  }
   for (std::size_t i = 0; i < map.differences.size(); ++i) {
-    const std::string sample = fmt::format("difference_{}.Sample(state, uv)", i);
-    text += fmt::format("  value += ({} - {})\n      * {} * w{}.{};\n", swizzled("float4", sample, map.map.channels),
+    const int texture = static_cast<int>(i);
+    const std::string sample = fmt::format("difference_{}.Sample(state, {})", i, place(texture));
+    text += fmt::format("  value += ({} - {})\n      * {} * w{}.{};\n",
+                        swizzled("float4", sample, map.map.channels, kept(map.map, texture)),
                         literal("float4", map.differences[i].zero), literal("float4", map.differences[i].scale), i / 4,
                         "xyzw"[i % 4]);
   }
@@ -85,7 +92,7 @@ std::vector<std::string> mapTextures(const Package& package, const EngineMap& ma
 }
 
 std::string hlslFunctions(const Package& package, const std::vector<EngineMap>& maps, Rows rows,
-                          const std::string& storage) {
+                          const std::string& storage, KeptBlocks kept) {
   std::string text = kPreamble;
   text += rows == Rows::kFromTop ? kFromTop : kFromBottom;
   text +=
@@ -93,17 +100,19 @@ std::string hlslFunctions(const Package& package, const std::vector<EngineMap>& 
   text += embeddedExportFiles().at("facezip_blend.h");
   for (const char* name : {"vec2", "vec4", "ivec2"}) text += fmt::format("#undef {}\n", name);
   text += kConversions;
-  for (const EngineMap& map : maps) text += mapFunction(package, map);
+  for (const EngineMap& map : maps) text += mapFunction(package, map, kept);
   return text;
 }
 
 void writePlainTextures(const Package& package, const std::vector<EngineMap>& maps, const std::filesystem::path& folder,
-                        Progress& progress) {
+                        Progress& progress, KeptBlocks kept) {
   const std::filesystem::path textures = folder / "textures";
   io::createDirectories(textures);
   for (const EngineMap& map : maps) {
-    writeNeutral(package, map, textures, progress);
-    writeDifferences(package, map, textures, progress);
+    for (int texture = -1; texture < static_cast<int>(map.differences.size()); ++texture) {
+      const std::string name = texture < 0 ? map.id + "_neutral" : fmt::format("{}_difference_{}", map.id, texture);
+      writeTexture(package, map, texture, kept, textures / name, progress);
+    }
   }
   writeWeights(package, maps, textures, progress);
 }

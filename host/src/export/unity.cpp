@@ -6,8 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "blocks/block_format.hpp"
 #include "export/export_files.hpp"
 #include "export/hlsl_text.hpp"
+#include "io/counts.hpp"
 #include "io/staged_directory.hpp"
 
 namespace facezip::exporting {
@@ -71,7 +73,7 @@ std::string hlslFile(const Package& package, const std::vector<EngineMap>& maps)
   text += "SamplerState facezip_sampler_trilinear_clamp;\n";
   text += fmt::format("float fz_beta[{}];  // weights of the expressions, by FaceZipDriver\n",
                       package.expressions().size());
-  text += hlslFunctions(package, maps, Rows::kFromBottom, "static ");
+  text += hlslFunctions(package, maps, Rows::kFromBottom, "static ", unityBlocks);
   text += kGammaSpace;
   text +=
       "\nstruct FaceZipSurface {\n  float3 albedo;\n  float3 normal;  // tangent space\n  float roughness;\n  float "
@@ -113,10 +115,18 @@ std::string plainName(const std::string& name) {
 
 }  // namespace
 
+std::optional<BlockFormat> unityBlocks(const PackageMap& map, int texture) {
+  const std::optional<BlockFormat> format = texture < 0 ? map.neutral_format : map.differences[toSize(texture)].format;
+  if (!format) return std::nullopt;
+  const blocks::BlockFormatInfo& info = blocks::infoOf(*format);
+  if (blocks::isAstc(*format)) return info.block_width == info.block_height ? format : std::nullopt;
+  return map.width % 4 == 0 && map.height % 4 == 0 ? format : std::nullopt;
+}
+
 void writeUnity(const Package& package, const std::filesystem::path& folder, Progress& progress) {
   const std::vector<EngineMap> maps = engineMaps(package);
   requireMaps(package, maps);
-  writePlainTextures(package, maps, folder, progress);
+  writePlainTextures(package, maps, folder, progress, unityBlocks);
   io::writeTextFile(folder / "FaceZip.hlsl", hlslFile(package, maps));
   std::string properties;
   for (const std::string& name : allTextures(package, maps)) {

@@ -15,7 +15,7 @@ std::string blendStruct(const Package& package, const std::vector<EngineMap>& ma
   return fmt::format(
       "// FaceZip.ush - written by facezip export: the blend of one face, for Custom nodes of materials.\n"
       "struct FaceZipBlend {{\nfloat fz_beta[{}];  // weights of the expressions\n{}}};\n",
-      package.expressions().size(), hlslFunctions(package, maps, Rows::kFromTop, ""));
+      package.expressions().size(), hlslFunctions(package, maps, Rows::kFromTop, "", noBlocks));
 }
 
 /// The end of a Custom node's code, behind the struct. Inputs: uv, textures by name, beta_0 to beta_N-1.
@@ -43,6 +43,27 @@ std::string nodeCode(const Package& package, const EngineMap& map) {
   return text + "return value;\n";
 }
 
+/// How Unreal, whose importers take no blocks, is to code a texture again that was in blocks; none: as it is. It makes
+/// ASTC of both where platforms have no BC.
+std::optional<std::string> compressionOf(const std::optional<BlockFormat>& format) {
+  if (!format) return std::nullopt;
+  return *format == BlockFormat::kBc1 ? "TC_DEFAULT" : "TC_BC7";
+}
+
+nlohmann::json compressions(const std::vector<EngineMap>& maps) {
+  nlohmann::json all = nlohmann::json::object();
+  for (const EngineMap& map : maps) {
+    const auto add = [&](const std::string& name, const std::optional<BlockFormat>& format) {
+      if (const auto compression = compressionOf(format)) all[map.id + name] = *compression;
+    };
+    add("_neutral", map.map.neutral_format);
+    for (std::size_t i = 0; i < map.map.differences.size(); ++i) {
+      add(fmt::format("_difference_{}", i), map.map.differences[i].format);
+    }
+  }
+  return all;
+}
+
 /// Property of the material that a role goes to, and how many floats its node gives.
 std::pair<const char*, int> materialProperty(mesh::MapRole role) {
   switch (role) {
@@ -65,11 +86,13 @@ std::pair<const char*, int> materialProperty(mesh::MapRole role) {
 void writeUnreal(const Package& package, const std::filesystem::path& folder, Progress& progress) {
   const std::vector<EngineMap> maps = engineMaps(package);
   requireMaps(package, maps);
-  writePlainTextures(package, maps, folder, progress);
+  writePlainTextures(package, maps, folder, progress, noBlocks);
   io::writeTextFile(folder / "FaceZip.ush", blendStruct(package, maps));
   // What facezip_unreal.py reads.
-  nlohmann::json face = {
-      {"name", package.name()}, {"expressions", package.expressions()}, {"nodes", nlohmann::json::array()}};
+  nlohmann::json face = {{"name", package.name()},
+                         {"expressions", package.expressions()},
+                         {"nodes", nlohmann::json::array()},
+                         {"compression", compressions(maps)}};
   for (const EngineMap& map : maps) {
     const std::string file = "node_" + map.id + ".hlsl";
     io::writeTextFile(folder / file, nodeCode(package, map));

@@ -30,10 +30,12 @@ void requireLikeNeutral(const ImageReader& texture, const ImageReader& neutral, 
 
 }  // namespace
 
-SampleBands::SampleBands(const CaptureMap& map, const std::vector<std::string>& names) : map_(map) {
+SampleBands::SampleBands(const CaptureMap& map, const std::vector<std::string>& names)
+    : map_name_(map.name), expressions_(static_cast<int>(names.size())) {
   assert(names.size() == map.expressions.size());
   readers_.emplace_back(map.neutral);
   shape_ = readers_.front().shape();
+  sample_type_ = shape_.type;
   if (shape_.channels < 1 || shape_.channels > 4) {
     throw InputError(
         {map.neutral.string(), "", "1 to 4 channels", fmt::format("{} channels", shape_.channels), "split the image"});
@@ -44,7 +46,12 @@ SampleBands::SampleBands(const CaptureMap& map, const std::vector<std::string>& 
   }
 }
 
+SampleBands::SampleBands(const ImageShape& shape, SampleType sample_type, int expressions,
+                         std::unique_ptr<SampleSource> source)
+    : shape_(shape), sample_type_(sample_type), expressions_(expressions), source_(std::move(source)) {}
+
 std::string SampleBands::mixedColours() const {
+  if (source_) return "";
   const std::string expected = readers_.front().colours();
   const auto said = [](const std::string& colours) { return colours.empty() ? "nothing" : colours; };
   std::string first;
@@ -57,23 +64,27 @@ std::string SampleBands::mixedColours() const {
   if (others == 0) return "";
   if (others > 1) first += fmt::format(", {} more are no {} either", others - 1, said(expected));
   return fmt::format("map \"{}\": of its colours {} says {}, {}: samples are taken as they are, without conversion",
-                     map_.name, readers_.front().path().filename().string(), said(expected), first);
+                     map_name_, readers_.front().path().filename().string(), said(expected), first);
+}
+
+std::size_t SampleBands::rowBytes() const {
+  return ImageShape{shape_.width, 1, shape_.channels, sample_type_}.rowBytes();
 }
 
 std::size_t SampleBands::bandBytes(int rows) const {
-  return readers_.size() * static_cast<std::size_t>(rows) * shape_.rowBytes();
+  return (static_cast<std::size_t>(expressions_) + 1) * static_cast<std::size_t>(rows) * rowBytes();
 }
 
 std::size_t SampleBands::decodedBytes() const { return bandBytes(shape_.height); }
 
 std::size_t SampleBands::scratchOffset(std::size_t image, int row) const {
-  return (image * static_cast<std::size_t>(shape_.height) + static_cast<std::size_t>(row)) * shape_.rowBytes();
+  return (image * static_cast<std::size_t>(shape_.height) + static_cast<std::size_t>(row)) * rowBytes();
 }
 
 template <typename Keep>
 void SampleBands::decodeRows(int begin, int end, std::span<std::byte> out, const Keep& keep) {
   const auto start = std::chrono::steady_clock::now();
-  const std::size_t image_bytes = static_cast<std::size_t>(end - begin) * shape_.rowBytes();
+  const std::size_t image_bytes = static_cast<std::size_t>(end - begin) * rowBytes();
   tbb::parallel_for(std::size_t{0}, readers_.size(), [&](std::size_t i) {
     const std::span<std::byte> rows = out.subspan(i * image_bytes, image_bytes);
     readers_[i].readRows(begin, end, rows);
@@ -111,9 +122,15 @@ void SampleBands::waitForRows(int end) {
 
 void SampleBands::readRows(int begin, int end, std::span<std::byte> out) {
   assert(out.size() == bandBytes(end - begin));
+  readStoredRows(begin, end, out);
+  if (change_neutral_) change_neutral_(begin, end, out);
+}
+
+void SampleBands::readStoredRows(int begin, int end, std::span<std::byte> out) {
+  if (source_) return source_->readRows(begin, end, out);
   if (!scratch_) return decodeRows(begin, end, out, [](std::size_t, std::span<const std::byte>) {});
   waitForRows(end);
-  const std::size_t image_bytes = static_cast<std::size_t>(end - begin) * shape_.rowBytes();
+  const std::size_t image_bytes = static_cast<std::size_t>(end - begin) * rowBytes();
   tbb::parallel_for(std::size_t{0}, readers_.size(), [&](std::size_t i) {
     scratch_->read(scratchOffset(i, begin), out.subspan(i * image_bytes, image_bytes));
   });

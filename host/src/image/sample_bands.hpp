@@ -27,17 +27,35 @@ struct SampleBand {
   std::span<const std::byte> samples;
 };
 
+/// Textures of a map that are no files: made row by row.
+class SampleSource {
+ public:
+  virtual ~SampleSource() = default;
+  /// Rows [begin, end) of the neutral, then of every expression, as a SampleBand holds them. A pass begins at row 0 and
+  /// goes from top to bottom in multiples of 16 rows; called by one thread at a time.
+  virtual void readRows(int begin, int end, std::span<std::byte> out) = 0;
+};
+
+/// Changes the neutral of a band: its rows [begin, end) in `samples`, which hold the expressions behind it.
+using ChangeNeutral = std::function<void(int begin, int end, std::span<std::byte> samples)>;
+
 class SampleBands {
  public:
   /// Opens every texture of `map` and checks it against the neutral's. Throws InputError: another size, channel count
   /// or sample type than the neutral's, more than four channels. names  the expressions' names, for messages
   SampleBands(const CaptureMap& map, const std::vector<std::string>& names);
 
+  /// Of what `source` makes. shape  of the map; sample_type  of the samples that bands hold, which may be finer
+  SampleBands(const ImageShape& shape, SampleType sample_type, int expressions, std::unique_ptr<SampleSource> source);
+
+  /// Of the map's textures.
   const ImageShape& shape() const { return shape_; }
+  /// Of the samples in bands: the shape's, but for what a source makes.
+  SampleType sampleType() const { return sample_type_; }
   /// "" where all textures say the same of their colours (ImageReader::colours()), else a sentence that says who
   /// differs.
   std::string mixedColours() const;
-  int expressions() const { return static_cast<int>(map_.expressions.size()); }
+  int expressions() const { return expressions_; }
 
   /// Bytes of all textures, decoded.
   std::size_t decodedBytes() const;
@@ -56,10 +74,15 @@ class SampleBands {
   void forEachBand(int band_rows, Progress& progress, const std::function<void(const SampleBand&)>& visit,
                    const std::function<void(int begin, int end)>& prepare = {});
 
+  /// Makes the passes from here on see another neutral. change  may be called by several threads at once
+  void changeNeutral(ChangeNeutral change) { change_neutral_ = std::move(change); }
+
   /// Reads rows [begin, end) of every texture, as a SampleBand holds them: from the scratch file where there is one.
   /// Passes over the rows must go from top to bottom where there is none. Throws InputError, OutputError.
   void readRows(int begin, int end, std::span<std::byte> out);
   std::size_t bandBytes(int rows) const;
+  /// Bytes of a row of one texture, as bands hold it.
+  std::size_t rowBytes() const;
 
   /// Seconds that forEachBand waited for samples, over all passes.
   double waitSeconds() const { return wait_seconds_; }
@@ -70,11 +93,16 @@ class SampleBands {
   /// Decodes rows [begin, end) of each texture on several threads, and gives them to keep(texture, rows).
   template <typename Keep>
   void decodeRows(int begin, int end, std::span<std::byte> out, const Keep& keep);
+  void readStoredRows(int begin, int end, std::span<std::byte> out);
   void waitForRows(int end);
   std::size_t scratchOffset(std::size_t image, int row) const;
 
-  CaptureMap map_;
+  std::string map_name_;
   ImageShape shape_;
+  SampleType sample_type_;
+  int expressions_;
+  ChangeNeutral change_neutral_;
+  std::unique_ptr<SampleSource> source_;  ///< one of the two
   std::vector<ImageReader> readers_;
   std::unique_ptr<ScratchFile> scratch_;
   std::mutex mutex_;                 ///< of the next three

@@ -8,7 +8,7 @@ namespace facezip::image {
 
 void SampleWindow::moveTo(int begin, int end) {
   assert(begin >= begin_ && end >= end_ && begin <= end);
-  const std::size_t row_bytes = source_.shape().rowBytes();
+  const std::size_t row_bytes = source_.rowBytes();
   const auto rows = [row_bytes](int count) { return static_cast<std::size_t>(count) * row_bytes; };
   const int kept = std::max(0, end_ - begin);  // the last rows of the old window are the first of the new
   const int fresh_begin = begin + kept;

@@ -21,18 +21,6 @@ std::string describe(const blocks::BlockTexture& texture) {
                      texture.srgb ? ", sRGB" : "");
 }
 
-/// Samplers must give what is blended: codes, with no curve undone.
-blocks::TextureFileReader openBlocks(const io::Folder& folder, const StoredTexture& texture) {
-  InputFile opened = folder.open(texture.file, "a KTX2 texture", "the package is damaged: write it again");
-  const std::filesystem::path path = folder.path() / texture.file;
-  blocks::TextureFileReader reader(path, std::move(opened));
-  const blocks::BlockTexture& found = reader.texture();
-  const blocks::BlockTexture expected{*texture.format, texture.shape.width, texture.shape.height, found.levels, false};
-  if (found == expected) return reader;
-  throw InputError({path.string(), "", describe(expected) + " (package.json)", describe(found),
-                    "the package was changed: write it again"});
-}
-
 void store(std::span<const float> codes, image::SampleType type, std::span<std::byte> out) {
   if (type == image::SampleType::kUint8) {
     for (std::size_t s = 0; s < codes.size(); ++s) out[s] = static_cast<std::byte>(codes[s] + 0.5f);
@@ -45,6 +33,18 @@ void store(std::span<const float> codes, image::SampleType type, std::span<std::
 }
 
 }  // namespace
+
+// Samplers must give what is blended: codes, with no curve undone.
+blocks::TextureFileReader openBlocks(const io::Folder& folder, const StoredTexture& texture) {
+  InputFile opened = folder.open(texture.file, "a KTX2 texture", "the package is damaged: write it again");
+  const std::filesystem::path path = folder.path() / texture.file;
+  blocks::TextureFileReader reader(path, std::move(opened));
+  const blocks::BlockTexture& found = reader.texture();
+  const blocks::BlockTexture expected{*texture.format, texture.shape.width, texture.shape.height, found.levels, false};
+  if (found == expected) return reader;
+  throw InputError({path.string(), "", describe(expected) + " (package.json)", describe(found),
+                    "the package was changed: write it again"});
+}
 
 StoredTexture neutralTexture(const PackageMap& map) {
   StoredTexture texture{map.neutral_file, map.neutral_format, neutralShape(map)};
@@ -62,6 +62,11 @@ StoredTexture differenceTexture(const PackageMap& map, int difference) {
   StoredTexture texture{stored.file, stored.format, differenceShape(map)};
   if (stored.format && readBits(map) == 16) texture.shape.type = image::SampleType::kUint16;
   return texture;
+}
+
+bool hasBlocks(const PackageMap& map) {
+  const auto in_blocks = [](const PackageDifference& difference) { return difference.format.has_value(); };
+  return map.neutral_format || std::ranges::any_of(map.differences, in_blocks);
 }
 
 std::uint64_t bytesInMemory(const StoredTexture& texture) {

@@ -28,6 +28,9 @@ StoredTexture neutralTexture(const PackageMap& map);
 /// The difference textures of a map are read as one type: 16 bits where one of them needs it.
 StoredTexture differenceTexture(const PackageMap& map, int difference);
 
+/// Whether one of a map's textures is in blocks.
+bool hasBlocks(const PackageMap& map);
+
 /// Bits of the codes that differenceTexture() is read as, 8 or 16.
 int readBits(const PackageMap& map);
 
@@ -36,6 +39,9 @@ std::uint64_t bytesInMemory(const StoredTexture& texture);
 
 /// Opens the texture and checks that it is whole and what `texture` says. Returns its bytes. Throws InputError.
 std::uint64_t checkTexture(const io::Folder& folder, const StoredTexture& texture);
+
+/// Opens a texture in blocks. Throws InputError: not what `texture` says, not whole.
+blocks::TextureFileReader openBlocks(const io::Folder& folder, const StoredTexture& texture);
 
 /// Reads rows of one texture.
 class TextureReader {

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <vector>
 
+#include "io/counts.hpp"
 #include "package/package_files.hpp"
 #include "package/package_json.hpp"
 
@@ -124,6 +125,23 @@ void readWeightAtlas(const PackageDescription& description, int set, const io::F
       visitRows(weights, expressions, file, shape, begin, rows, visit);
     }
   }
+}
+
+void readWeightCodes(const PackageDescription& description, int set, const io::Folder& folder,
+                     std::span<std::byte> codes) {
+  const PackageWeights& weights = description.weights[toSize(set)];
+  const auto textures = toSize(description.differences);
+  const std::size_t cells = toSize(weights.tile_height, weights.tile_width);
+  assert(codes.size() == description.expressions.size() * cells * textures);
+  readWeightAtlas(
+      description, set, folder,
+      [&](int expression, int cell_row, int first_channel, int row_channels, std::span<const std::byte> row) {
+        const std::size_t first = toSize(expression) * cells + toSize(cell_row, weights.tile_width);
+        const auto channels = toSize(row_channels);
+        for (std::size_t b = 0; b < row.size(); ++b) {
+          codes[(first + b / channels) * textures + toSize(first_channel) + b % channels] = row[b];
+        }
+      });
 }
 
 }  // namespace facezip::package

@@ -33,4 +33,8 @@ using WeightRowVisitor = std::function<void(int expression, int cell_row, int fi
 void readWeightAtlas(const PackageDescription& description, int set, const io::Folder& folder,
                      const WeightRowVisitor& visit);
 
+/// All codes of a set as writeWeightAtlas() takes them, [N][tile_height][tile_width][C]. Throws InputError.
+void readWeightCodes(const PackageDescription& description, int set, const io::Folder& folder,
+                     std::span<std::byte> codes);
+
 }  // namespace facezip::package

@@ -15,6 +15,8 @@ namespace facezip::raster {
 /// Two bits for each texel of a raster, and a byte where it has a feather.
 class TexelClasses {
  public:
+  /// Of an image that shows nothing yet.
+  TexelClasses(int width, int height);
   /// Of the whole image.
   explicit TexelClasses(const UvRaster& raster);
   /// Of rows [begin, end) as a whole of their own, without the gutter.
@@ -33,9 +35,13 @@ class TexelClasses {
   /// Whether there is a feather, and the share of the differences of texel (x, y) that counts, in 1/255.
   bool fades() const { return !fades_.empty(); }
   std::uint8_t fade(int x, int y) const { return fades_[toSize(y, width_) + toSize(x)]; }
+  /// Marks texels of row y in column `tile_x` of tiles, the leftmost in the lowest bit; those that are covered are
+  /// active, too. Rows may be marked side by side.
+  void mark(int tile_x, int y, std::uint32_t active, std::uint32_t covered) {
+    words_[index(tile_x, y)] |= (active | covered) | covered << 16;
+  }
 
  private:
-  TexelClasses(int width, int height);
   /// Takes over whole rows of samples, the first as row `y`.
   void set(const std::vector<TexelSample>& samples, int y);
   std::size_t index(int tile_x, int y) const { return toSize(y, tile_columns_) + toSize(tile_x); }

@@ -158,6 +158,24 @@ std::string toJson(const CompressReport& report) {
   return object.dump(2) + "\n";
 }
 
+std::string toJson(const ConvertReport& report) {
+  json object = {{"facezip_report", "convert"},
+                 {"version", kReportVersion},
+                 {"device", report.device},
+                 {"maps", json::object()},
+                 {"bytes",
+                  {{"memory", {{"before", report.memory_before}, {"after", report.memory_after}}},
+                   {"package_disk", {{"before", report.disk_before}, {"after", report.disk_after}}}}},
+                 {"seconds", secondsJson(report.seconds)}};
+  for (const ConvertReport::Map& map : report.maps) {
+    object["maps"][map.name] = {{"texture_format", formatJson(map.texture_format)},
+                                {"difference_format", formatJson(map.difference_format)},
+                                {"bytes", {{"before", map.bytes_before}, {"after", map.bytes_after}}},
+                                {"rmse", map.rmse}};
+  }
+  return object.dump(2) + "\n";
+}
+
 std::string toJson(const Evaluation& evaluation) {
   json object = {{"facezip_report", "evaluate"},
                  {"version", kReportVersion},

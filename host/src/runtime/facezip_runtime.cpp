@@ -7,17 +7,28 @@
 #include <cmath>
 #include <cstring>
 #include <new>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "blend/shape_names.hpp"
+#include "blocks/block_format.hpp"
+#include "blocks/block_texture.hpp"
+#include "blocks/texture_file.hpp"
 #include "facezip/blend.hpp"
 #include "facezip/version.hpp"
 #include "io/composed.hpp"
+#include "io/counts.hpp"
+#include "io/folder.hpp"
+#include "package/package_textures.hpp"
+#include "package/weight_atlas.hpp"
 
 struct facezip_package {
-  facezip::PackageDescription description;  // no Package, whose files would stay open
-  facezip::Blender blender;
+  facezip::PackageDescription description;
+  std::optional<facezip::Blender> blender;   // one of the two
+  std::optional<facezip::Package> files;     // stay open
+  std::vector<std::vector<int32_t>> levels;  // of every map's textures, the neutral first
 };
 
 namespace {
@@ -73,6 +84,59 @@ const facezip::PackageMap& mapOf(const facezip_package* package, int32_t map) {
   return maps[static_cast<std::size_t>(map)];
 }
 
+/// A texture as the package stores it; its levels are in its file.
+facezip::package::StoredTexture textureOf(const facezip_package* package, int32_t map, int32_t texture) {
+  const facezip::PackageMap& found = mapOf(package, map);
+  const auto count = static_cast<int32_t>(found.differences.size());
+  if (texture < 0 || texture > count)
+    throw ArgumentError(fmt::format("texture: expected 0 to {}, got {}", count, texture));
+  return texture == 0 ? facezip::package::neutralTexture(found)
+                      : facezip::package::differenceTexture(found, texture - 1);
+}
+
+int32_t levelsOf(const facezip_package* package, int32_t map, int32_t texture) {
+  return package->levels[static_cast<std::size_t>(map)][static_cast<std::size_t>(texture)];
+}
+
+/// Mip levels as the files have them; images have one.
+std::vector<std::vector<int32_t>> levelsIn(const facezip::Package& package) {
+  std::vector<std::vector<int32_t>> levels;
+  for (const facezip::PackageMap& map : package.maps()) {
+    std::vector<int32_t>& of_map = levels.emplace_back();
+    const auto add = [&](const facezip::package::StoredTexture& texture) {
+      of_map.push_back(texture.format ? facezip::package::openBlocks(package.folder(), texture).texture().levels : 1);
+    };
+    add(facezip::package::neutralTexture(map));
+    for (int i = 0; i < package.differences(); ++i) add(facezip::package::differenceTexture(map, i));
+  }
+  return levels;
+}
+
+std::size_t levelBytes(const facezip::package::StoredTexture& texture, int32_t level) {
+  const facezip::image::ImageShape& shape = texture.shape;
+  if (!texture.format) return facezip::toSize(shape.height) * shape.rowBytes();
+  return facezip::blocks::blockBytes(*texture.format, facezip::blocks::levelSide(shape.width, level),
+                                     facezip::blocks::levelSide(shape.height, level));
+}
+
+std::size_t weightBytes(const facezip_package* package, const facezip::PackageMap& map) {
+  const facezip::PackageDescription& description = package->description;
+  const facezip::PackageWeights& weights = description.weights[static_cast<std::size_t>(map.weight_set)];
+  return description.expressions.size() * facezip::toSize(weights.tile_height, weights.tile_width) *
+         facezip::toSize(description.differences);
+}
+
+const facezip::Package& filesOf(const facezip_package* package) {
+  require(package->files.has_value(), "package: expected one that facezip_open() gave, its files are not open");
+  return *package->files;
+}
+
+facezip::Blender& blenderOf(facezip_package* package) {
+  require(package != nullptr, "package is null");
+  require(package->blender.has_value(), "package: expected one that facezip_load() gave, it is on no device");
+  return *package->blender;
+}
+
 facezip_sample_type sampleType(facezip::SampleType type) {
   switch (type) {
     case facezip::SampleType::kUint8:
@@ -117,8 +181,20 @@ facezip_status facezip_load(const char* directory, const char* device, facezip_p
     require(directory != nullptr, "directory is null");
     *package = facezip::withPackage(directory, [&](const facezip::Package& opened) {
       facezip::Blender blender(opened, facezip::openDevice(device == nullptr ? "auto" : device));
-      return new facezip_package{opened.description(), std::move(blender)};
+      return new facezip_package{opened.description(), std::move(blender), std::nullopt, levelsIn(opened)};
     });
+  });
+}
+
+facezip_status facezip_open(const char* directory, facezip_package** package) {
+  if (package != nullptr) *package = nullptr;
+  return guarded([&] {
+    require(package != nullptr, "package is null");
+    require(directory != nullptr, "directory is null");
+    facezip::Package opened = facezip::Package::open(directory);
+    facezip::PackageDescription description = opened.description();
+    std::vector<std::vector<int32_t>> levels = levelsIn(opened);
+    *package = new facezip_package{std::move(description), std::nullopt, std::move(opened), std::move(levels)};
   });
 }
 
@@ -172,10 +248,107 @@ facezip_status facezip_get_map_info(const facezip_package* package, int32_t map,
   });
 }
 
+facezip_status facezip_get_texture_info(const facezip_package* package, int32_t map, int32_t texture,
+                                        facezip_texture_info* info) {
+  return guarded([&] {
+    const facezip::package::StoredTexture stored = textureOf(package, map, texture);
+    require(info != nullptr, "info is null");
+    require(info->struct_size == sizeof(facezip_texture_info),
+            "info->struct_size: expected sizeof(facezip_texture_info)");
+    *info = {};
+    info->struct_size = sizeof(facezip_texture_info);
+    info->format = "";
+    info->width = stored.shape.width;
+    info->height = stored.shape.height;
+    info->channels = stored.shape.channels;
+    info->sample_type = stored.format ? FACEZIP_UINT8 : sampleType(stored.shape.type);
+    info->block_width = info->block_height = 1;
+    info->block_bytes = stored.shape.channels * static_cast<int32_t>(facezip::image::sampleBytes(stored.shape.type));
+    if (stored.format) {
+      const facezip::blocks::BlockFormatInfo& format = facezip::blocks::infoOf(*stored.format);
+      info->format = format.name.data();  // of a literal
+      info->vk_format = format.vk_unorm;
+      info->dxgi_format = format.dxgi_unorm;
+      info->block_width = format.block_width;
+      info->block_height = format.block_height;
+      info->block_bytes = format.block_bytes;
+    }
+    info->levels = levelsOf(package, map, texture);
+    for (int32_t level = 0; level < info->levels; ++level) info->bytes += levelBytes(stored, level);
+    std::fill_n(info->scale, 4, 1.0);
+    if (texture == 0) return;
+    const facezip::PackageDifference& difference =
+        mapOf(package, map).differences[static_cast<std::size_t>(texture - 1)];
+    std::ranges::copy(difference.scale, info->scale);
+    std::ranges::copy(difference.offset, info->offset);
+  });
+}
+
+size_t facezip_level_bytes(const facezip_package* package, int32_t map, int32_t texture, int32_t level) {
+  std::size_t bytes = 0;
+  guarded([&] {
+    const facezip::package::StoredTexture stored = textureOf(package, map, texture);
+    if (0 <= level && level < levelsOf(package, map, texture)) bytes = levelBytes(stored, level);
+  });
+  return bytes;
+}
+
+facezip_status facezip_read_level(const facezip_package* package, int32_t map, int32_t texture, int32_t level,
+                                  void* data, size_t bytes) {
+  return guarded([&] {
+    const facezip::package::StoredTexture stored = textureOf(package, map, texture);
+    if (level < 0 || level >= levelsOf(package, map, texture)) {
+      throw ArgumentError(fmt::format("level: expected 0 to {}, got {}", levelsOf(package, map, texture) - 1, level));
+    }
+    require(data != nullptr, "data is null");
+    if (bytes != levelBytes(stored, level)) {
+      throw ArgumentError(fmt::format("bytes: expected {}, got {}", levelBytes(stored, level), bytes));
+    }
+    const std::span out(static_cast<std::byte*>(data), bytes);
+    const facezip::io::Folder& folder = filesOf(package).folder();
+    if (!stored.format) return facezip::package::TextureReader(folder, stored).readRows(0, stored.shape.height, out);
+    const facezip::blocks::TextureFileReader reader = facezip::package::openBlocks(folder, stored);
+    reader.readRows(level, 0, static_cast<int>(bytes / facezip::blocks::blockRowBytes(reader.texture(), level)), out);
+  });
+}
+
+facezip_status facezip_get_weights_info(const facezip_package* package, int32_t map, facezip_weights_info* info) {
+  return guarded([&] {
+    const facezip::PackageMap& found = mapOf(package, map);
+    require(info != nullptr, "info is null");
+    require(info->struct_size == sizeof(facezip_weights_info),
+            "info->struct_size: expected sizeof(facezip_weights_info)");
+    const facezip::PackageWeights& weights = package->description.weights[static_cast<std::size_t>(found.weight_set)];
+    *info = {};
+    info->struct_size = sizeof(facezip_weights_info);
+    info->set = found.weight_set;
+    info->columns = weights.tile_width;
+    info->rows = weights.tile_height;
+    info->channels = package->description.differences;
+    info->weight_scale = found.weight_scale;
+    info->bytes = weightBytes(package, found);
+    std::ranges::copy(weights.scale, info->scale);
+    std::ranges::copy(weights.offset, info->offset);
+  });
+}
+
+facezip_status facezip_read_weights(const facezip_package* package, int32_t map, void* codes, size_t bytes) {
+  return guarded([&] {
+    const facezip::PackageMap& found = mapOf(package, map);
+    require(codes != nullptr, "codes is null");
+    if (bytes != weightBytes(package, found)) {
+      throw ArgumentError(fmt::format("bytes: expected {}, got {}", weightBytes(package, found), bytes));
+    }
+    const facezip::Package& files = filesOf(package);
+    facezip::package::readWeightCodes(files.description(), found.weight_set, files.folder(),
+                                      std::span(static_cast<std::byte*>(codes), bytes));
+  });
+}
+
 facezip_status facezip_set_weights(facezip_package* package, const float* weights, size_t count) {
   return guarded([&] {
     const std::span<const float> beta = checkedWeights(package, weights, count);
-    package->blender.setWeights(beta);
+    blenderOf(package).setWeights(beta);
   });
 }
 
@@ -187,6 +360,6 @@ facezip_status facezip_blend(facezip_package* package, int32_t map, void* frame,
       throw ArgumentError(
           fmt::format("bytes: expected {}, a frame of {}, got {}", found.frameBytes(), found.name, bytes));
     }
-    package->blender.blend(map, std::span(static_cast<std::byte*>(frame), bytes));
+    blenderOf(package).blend(map, std::span(static_cast<std::byte*>(frame), bytes));
   });
 }

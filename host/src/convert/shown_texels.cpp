@@ -8,11 +8,11 @@
 #include <span>
 
 #include "io/counts.hpp"
-#include "mesh/gltf_accessors.hpp"
 #include "mesh/package_mesh.hpp"
 #include "package/package_textures.hpp"
 #include "raster/tiles.hpp"
 #include "raster/uv_raster.hpp"
+#include "scene/gltf_accessors.hpp"
 
 namespace facezip::convert {
 namespace {
@@ -165,9 +165,9 @@ std::optional<geometry::TriangleMesh> uvMesh(const Package& package, std::uint64
   const nlohmann::json& attributes = primitive["attributes"];
   if (!attributes.contains("TEXCOORD_0")) return std::nullopt;
   const io::JsonField root(found.document, package.description().mesh_file, "");
-  const mesh::GltfAccessors accessors(root, found.buffer);
-  const mesh::Accessor& uvs = accessors[attributes["TEXCOORD_0"].get<std::size_t>()];
-  const mesh::Accessor& indices = accessors[primitive["indices"].get<std::size_t>()];
+  const scene::GltfAccessors accessors(root, found.buffer);
+  const scene::Accessor& uvs = accessors[attributes["TEXCOORD_0"].get<std::size_t>()];
+  const scene::Accessor& indices = accessors[primitive["indices"].get<std::size_t>()];
   if (!uvs.elements || uvs.sparse) return std::nullopt;
   geometry::TriangleMesh mesh;
   mesh.uvs.resize(static_cast<Eigen::Index>(uvs.count), 2);

@@ -128,11 +128,6 @@ void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
                   "Block format of the difference textures, where it is to be another")
       ->type_name("FORMAT")
       ->needs(format);
-  command
-      .add_option("--neutral", arguments.neutral_texture,
-                  "captured: as it is; best: where no expression changes anything, the mean of all scans")
-      ->check(CLI::IsMember(allNames<NeutralTexture>()))
-      ->capture_default_str();
   CLI::Option* sets =
       command
           .add_option(
@@ -196,7 +191,6 @@ void addCompressOptions(CLI::App& command, CompressArguments& arguments) {
 CompressOptions parseCompressOptions(const CompressArguments& arguments) {
   CompressOptions options = arguments.options;
   options.method = *findNamed<Method>(arguments.method);  // CLI11 has checked it
-  options.neutral_texture = *findNamed<NeutralTexture>(arguments.neutral_texture);
   options.weight_sets = *findNamed<WeightSets>(arguments.weight_sets);
   options.permutation_solver = *findNamed<PermutationSolver>(arguments.permutation_solver);
   try {

@@ -38,7 +38,6 @@ struct CompressArguments {
   std::string method = "refined";
   std::string permutation_solver = "best";
   std::string weight_sets = "auto";
-  std::string neutral_texture = "captured";
   std::string texture_format = "png";
   std::string difference_format;
   std::string mask_radius = "3cm";

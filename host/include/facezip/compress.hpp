@@ -38,7 +38,6 @@ struct CompressOptions {
   /// Which maps share weights. What kAuto chooses by is estimated while the textures are read the first time; methods
   /// that fit no weights to texels (all but kRefined and kClosedLoop) share them.
   WeightSets weight_sets = WeightSets::kAuto;
-  NeutralTexture neutral_texture = NeutralTexture::kCaptured;
   int weight_scale = 8;  ///< texels of the largest map per weight cell, per axis; 1 to 64
   /// Poisson-disk radius of the mask samples; bare numbers are in the mesh's unit. The paper's 3 cm.
   geometry::Length mask_radius{3.0, geometry::LengthUnit::kCentimetre};

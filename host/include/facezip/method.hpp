@@ -31,19 +31,11 @@ enum class WeightSets {
   kPerMap,  ///< one for each
 };
 
-/// Which neutral a package holds.
-enum class NeutralTexture {
-  kCaptured,  ///< the capture's, bit for bit where it is no blocks
-  kBest,      ///< where no expression changes anything, the mean of all scans: less of the noise of one
-};
-
 template <>
 const std::vector<NamedValue<Method>>& namesOf();
 template <>
 const std::vector<NamedValue<PermutationSolver>>& namesOf();
 template <>
 const std::vector<NamedValue<WeightSets>>& namesOf();
-template <>
-const std::vector<NamedValue<NeutralTexture>>& namesOf();
 
 }  // namespace facezip

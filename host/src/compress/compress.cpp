@@ -9,7 +9,6 @@
 
 #include "blocks/block_format.hpp"
 #include "compress/attempt.hpp"
-#include "compress/best_neutral.hpp"
 #include "compress/border_steps.hpp"
 #include "compress/compress_options.hpp"
 #include "compress/compress_report.hpp"
@@ -140,7 +139,6 @@ CompressReport compressCapture(const Capture& capture, const fs::path& package, 
   io::StagedDirectory staged(package, package::footprint(), &progress);
   OpenTextures textures = openTextures(capture, staged.path(), run);
   MapSet& maps = textures.maps;
-  if (options.neutral_texture == NeutralTexture::kBest) useBestNeutrals(maps, run);
   const FaceModel model = readFaceModel(capture, options, run);
   const raster::TexelMasks masks(model.face.mesh, model.masks.region, model.masks.masks);
   const GramSlots slots{masks.maskCount(), masks.overlappingPairs()};

@@ -34,13 +34,4 @@ const std::vector<NamedValue<WeightSets>>& namesOf() {
   return names;
 }
 
-template <>
-const std::vector<NamedValue<NeutralTexture>>& namesOf() {
-  static const std::vector<NamedValue<NeutralTexture>> names = {
-      {NeutralTexture::kCaptured, "captured", "as captured"},
-      {NeutralTexture::kBest, "best", "the mean where nothing changes"},
-  };
-  return names;
-}
-
 }  // namespace facezip

@@ -35,7 +35,6 @@ std::string methodJson(const CompressOptions& options, const PackageForm& form, 
                  {"region", options.region},
                  {"importance", options.importance},
                  {"weights_per_map", form.weights_per_map},
-                 {"neutral", nameOf(options.neutral_texture)},
                  {"unit", options.unit.value_or("")}};
   if (options.masks) record["masks"] = *options.masks;
   if (options.gutter) record["gutter"] = *options.gutter;
@@ -72,9 +71,6 @@ CompressOptions optionsFromMethodJson(const std::string& json_text, const std::s
     if (const std::string unit = record.at("unit").get<std::string>(); !unit.empty()) options.unit = unit;
     if (record.contains("masks")) options.masks = record["masks"].get<int>();
     if (record.contains("gutter")) options.gutter = record["gutter"].get<int>();
-    if (record.contains("neutral")) {
-      options.neutral_texture = named<NeutralTexture>(record, "neutral", "a neutral", file);
-    }
     if (record.contains("feather")) options.feather = record["feather"].get<int>();
     if (record.contains("texture_format")) {
       options.texture_format = blockFormatOf(record["texture_format"].get<std::string>(), file);

@@ -122,11 +122,6 @@ void SampleBands::waitForRows(int end) {
 
 void SampleBands::readRows(int begin, int end, std::span<std::byte> out) {
   assert(out.size() == bandBytes(end - begin));
-  readStoredRows(begin, end, out);
-  if (change_neutral_) change_neutral_(begin, end, out);
-}
-
-void SampleBands::readStoredRows(int begin, int end, std::span<std::byte> out) {
   if (source_) return source_->readRows(begin, end, out);
   if (!scratch_) return decodeRows(begin, end, out, [](std::size_t, std::span<const std::byte>) {});
   waitForRows(end);

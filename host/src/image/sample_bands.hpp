@@ -36,9 +36,6 @@ class SampleSource {
   virtual void readRows(int begin, int end, std::span<std::byte> out) = 0;
 };
 
-/// Changes the neutral of a band: its rows [begin, end) in `samples`, which hold the expressions behind it.
-using ChangeNeutral = std::function<void(int begin, int end, std::span<std::byte> samples)>;
-
 class SampleBands {
  public:
   /// Opens every texture of `map` and checks it against the neutral's. Throws InputError: another size, channel count
@@ -74,9 +71,6 @@ class SampleBands {
   void forEachBand(int band_rows, Progress& progress, const std::function<void(const SampleBand&)>& visit,
                    const std::function<void(int begin, int end)>& prepare = {});
 
-  /// Makes the passes from here on see another neutral. change  may be called by several threads at once
-  void changeNeutral(ChangeNeutral change) { change_neutral_ = std::move(change); }
-
   /// Reads rows [begin, end) of every texture, as a SampleBand holds them: from the scratch file where there is one.
   /// Passes over the rows must go from top to bottom where there is none. Throws InputError, OutputError.
   void readRows(int begin, int end, std::span<std::byte> out);
@@ -93,7 +87,6 @@ class SampleBands {
   /// Decodes rows [begin, end) of each texture on several threads, and gives them to keep(texture, rows).
   template <typename Keep>
   void decodeRows(int begin, int end, std::span<std::byte> out, const Keep& keep);
-  void readStoredRows(int begin, int end, std::span<std::byte> out);
   void waitForRows(int end);
   std::size_t scratchOffset(std::size_t image, int row) const;
 
@@ -101,7 +94,6 @@ class SampleBands {
   ImageShape shape_;
   SampleType sample_type_;
   int expressions_;
-  ChangeNeutral change_neutral_;
   std::unique_ptr<SampleSource> source_;  ///< one of the two
   std::vector<ImageReader> readers_;
   std::unique_ptr<ScratchFile> scratch_;

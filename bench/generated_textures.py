@@ -16,20 +16,14 @@ import argparse
 import json
 import pathlib
 import re
-import subprocess
 
 import numpy as np
 from PIL import Image
 
+from people import run
+
 FORMS = {"facezip, 8 textures": ["--differences", "8"], "compress and stretch": ["--method", "compress-stretch"], "facezip, 2 textures": ["--differences", "2"],
          "facezip, 4 textures": ["--differences", "4"]}
-
-
-def run(*command):
-    done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
-    if done.returncode != 0:
-        raise SystemExit(f"{' '.join(map(str, command))}\n{done.stderr}")
-    return done.stdout
 
 
 def pixels(path):

@@ -13,20 +13,11 @@ generated shapes. Needs NumPy and SciPy.
 import argparse
 import json
 import pathlib
-import subprocess
 
 import numpy as np
 from scipy.optimize import lsq_linear
 
-
-def vertices(path):
-    return np.array([line.split()[1:4] for line in open(path) if line.startswith("v ")], np.float64)
-
-
-def run(*command):
-    done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
-    if done.returncode != 0:
-        raise SystemExit(f"{' '.join(map(str, command))}\n{done.stderr}")
+from people import rms, run, vertices
 
 
 def neutral_alone(subject, folder):
@@ -68,10 +59,6 @@ def fitted(shapes, displacement):
     factor = np.linalg.cholesky(gram + 1e-9 * np.trace(gram) / len(gram) * np.eye(len(gram))).T
     weights = lsq_linear(factor, np.linalg.solve(factor.T, basis.T @ displacement.ravel()), (0, 1)).x
     return displacement - (basis @ weights).reshape(displacement.shape)
-
-
-def rms(vectors):
-    return np.sqrt((vectors ** 2).sum(-1).mean())
 
 
 def main():

@@ -11,20 +11,11 @@ true ones (root mean square), and the same of a face generated of the true neutr
 """
 import argparse
 import pathlib
-import subprocess
 import sys
 
 import numpy as np
 
-
-def vertices(path):
-    return np.array([line.split()[1:4] for line in open(path) if line.startswith("v ")], np.float64)
-
-
-def run(*command):
-    done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
-    if done.returncode != 0:
-        raise SystemExit(f"{' '.join(map(str, command))}\n{done.stderr}")
+from people import rms, run, vertices
 
 
 def linked(folder, **files):
@@ -42,10 +33,6 @@ def rigid(points, onto):
     u, _, vt = np.linalg.svd((points - a).T @ (onto - b))
     turn = u @ np.diag([1, 1, np.sign(np.linalg.det(u @ vt))]) @ vt
     return turn, b - a @ turn
-
-
-def rms(vectors):
-    return np.sqrt((vectors ** 2).sum(-1).mean())
 
 
 def main():

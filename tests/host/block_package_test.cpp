@@ -6,15 +6,13 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "blocks/block_decoder.hpp"
-#include "blocks/block_encoder.hpp"
 #include "blocks/texture_file.hpp"
+#include "coded_afterwards.hpp"
 #include "facezip/compress.hpp"
 #include "facezip/evaluate.hpp"
 #include "facezip/reconstruct.hpp"
 #include "file_contents.hpp"
 #include "io/folder.hpp"
-#include "package/package_textures.hpp"
 #include "small_capture.hpp"
 #include "temporary_directory.hpp"
 #include "test_device.hpp"
@@ -87,26 +85,6 @@ INSTANTIATE_TEST_SUITE_P(Formats, BlockPackage,
                            return name;
                          });
 
-/// The package's textures coded as they are, without another look at what is blended from them.
-void codeAfterwards(const fs::path& package, BlockFormat format) {
-  const Package images = Package::open(package);
-  blocks::EncoderOptions options;
-  options.format = format;
-  const auto encoder = blocks::makeBlockEncoder(testDevice().context(), options);
-  const auto decoder = blocks::makeBlockDecoder(format, 3);
-  const auto recode = [&](const package::StoredTexture& texture) {
-    image::Image image = package::readTexture(images.folder(), texture);
-    const image::ImageShape& shape = image.shape;
-    std::vector<std::byte> blocks(blocks::blockBytes(format, shape.width, shape.height));
-    const std::span samples(reinterpret_cast<std::uint8_t*>(image.samples.data()), image.samples.size());
-    encoder->encode({shape.width, shape.height, 3, std::span<const std::uint8_t>(samples), {}}, blocks, {});
-    decoder->decode(shape.width, shape.height, blocks, samples);
-    image::writeImage(package / texture.file, image);
-  };
-  recode(package::neutralTexture(images.maps()[0]));
-  for (int i = 0; i < images.differences(); ++i) recode(package::differenceTexture(images.maps()[0], i));
-}
-
 TEST(BlockPackages, AreBetterThanImagesThatAreCodedAfterwards) {
   const test::TemporaryDirectory folder;
   test::writeSmallCapture(folder / "c", {.expressions = 9});
@@ -114,7 +92,7 @@ TEST(BlockPackages, AreBetterThanImagesThatAreCodedAfterwards) {
   const Capture capture = openCapture(folder / "c");
   compressCapture(capture, folder / "blocks", smallOptions(BlockFormat::kBc1), testDevice(), progress);
   compressCapture(capture, folder / "images", smallOptions(), testDevice(), progress);
-  codeAfterwards(folder / "images", BlockFormat::kBc1);
+  test::codeAfterwards(folder / "images", BlockFormat::kBc1);
   EXPECT_LT(rmse(capture, folder / "blocks"), 0.85 * rmse(capture, folder / "images"));
 }
 

@@ -7,8 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "blocks/block_decoder.hpp"
-#include "blocks/block_encoder.hpp"
+#include "coded_afterwards.hpp"
 #include "facezip/compress.hpp"
 #include "facezip/evaluate.hpp"
 #include "facezip/rig.hpp"
@@ -16,7 +15,6 @@
 #include "image/image_file.hpp"
 #include "io/staged_directory.hpp"
 #include "notes.hpp"
-#include "package/package_textures.hpp"
 #include "rig_capture.hpp"
 #include "small_capture.hpp"
 #include "template_parts.hpp"
@@ -80,31 +78,11 @@ TEST_F(Convert, IsAsNearToTheCaptureAsBlocksThatWereMadeOfIt) {
   }
 }
 
-/// The package's textures coded as they are, without another look at what is blended from them.
-void codeAfterwards(const fs::path& package, BlockFormat format) {
-  const Package images = Package::open(package);
-  blocks::EncoderOptions options;
-  options.format = format;
-  const auto encoder = blocks::makeBlockEncoder(testDevice().context(), options);
-  const auto decoder = blocks::makeBlockDecoder(format, 3);
-  const auto recode = [&](const package::StoredTexture& texture) {
-    image::Image image = package::readTexture(images.folder(), texture);
-    const image::ImageShape& shape = image.shape;
-    std::vector<std::byte> coded(blocks::blockBytes(format, shape.width, shape.height));
-    const std::span samples(reinterpret_cast<std::uint8_t*>(image.samples.data()), image.samples.size());
-    encoder->encode({shape.width, shape.height, 3, std::span<const std::uint8_t>(samples), {}}, coded, {});
-    decoder->decode(shape.width, shape.height, coded, samples);
-    image::writeImage(package / texture.file, image);
-  };
-  recode(package::neutralTexture(images.maps()[0]));
-  for (int i = 0; i < images.differences(); ++i) recode(package::differenceTexture(images.maps()[0], i));
-}
-
 TEST_F(Convert, ClosesTheLoop) {
   convert(at("images"), at("converted"), BlockFormat::kBc1);
   fs::remove_all(at("afterwards"));
   fs::copy(at("images"), at("afterwards"), fs::copy_options::recursive);
-  codeAfterwards(at("afterwards"), BlockFormat::kBc1);
+  test::codeAfterwards(at("afterwards"), BlockFormat::kBc1);
   EXPECT_LT(rmse(capture(), at("converted")), 0.85 * rmse(capture(), at("afterwards")));
 }
 

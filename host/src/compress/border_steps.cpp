@@ -43,10 +43,6 @@ BorderSteps::BorderSteps(const MapSet& maps, const geometry::TriangleMesh& mesh,
   }
 }
 
-bool BorderSteps::any() const {
-  return std::ranges::any_of(borders_, [](const Border& border) { return !border.texels.empty(); });
-}
-
 void BorderSteps::addBand(std::size_t m, const MapBand& band) {
   Border& border = borders_[m];
   const auto offset = static_cast<std::uint32_t>(toSize(band.begin, border.width));

@@ -17,9 +17,6 @@ class BorderSteps {
   /// mesh, region  as raster::UvRaster takes them
   BorderSteps(const MapSet& maps, const geometry::TriangleMesh& mesh, std::span<const int> region);
 
-  /// Whether the region ends anywhere within the mesh.
-  bool any() const;
-
   /// Shows a band of map `m`; of rising rows.
   void addBand(std::size_t m, const MapBand& band);
 
